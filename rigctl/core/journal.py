@@ -129,7 +129,9 @@ def verify_journal(path: Path) -> list[str]:
                 problems.append(f"line {number}: changed after it was written")
             writer = (record.source, record.pid)
             before = last.get(writer)
-            if record.seq > 0 and (before is None or before.sha != record.prev or before.seq + 1 != record.seq):
+            if record.seq > 0 and (
+                before is None or before.sha != record.prev or before.seq + 1 != record.seq
+            ):
                 problems.append(f"line {number}: gap before record {record.seq} of {record.source}")
             last[writer] = record
     return problems

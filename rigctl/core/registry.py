@@ -31,7 +31,9 @@ class Registry:
 
     def kinds(self, role: str) -> list[str]:
         """All kinds known for a role, from the table and from installed entry points."""
-        installed = [point.name.split(".", 1)[1] for point in self._entry_points() if point.name.startswith(f"{role}.")]
+        installed = [
+            point.name.split(".", 1)[1] for point in self._entry_points() if point.name.startswith(f"{role}.")
+        ]
         return sorted({kind for r, kind in self._table if r == role} | set(installed))
 
     def target(self, role: str, kind: str, *, place: str = "") -> str:
@@ -83,7 +85,9 @@ def load_target(target: str, *, place: str) -> Any:
         return getattr(module, attribute)
     except ImportError as error:
         raise DeviceError(
-            f"cannot import {target!r}: {error}.", place=place, value=target,
+            f"cannot import {target!r}: {error}.",
+            place=place,
+            value=target,
             remedy=f"Install the library that provides {error.name or module_name!r}.",
         ) from error
     except AttributeError as error:

@@ -32,8 +32,14 @@ _ALIGN = 64
 class SampleRing:
     """Rings of all channels of a rig. Make one with `create`, open an existing one with `attach`."""
 
-    def __init__(self, path: Path, buffer: mmap.mmap, specs: Sequence[ChannelSpec], capacities: Sequence[int],
-                 offset: int) -> None:
+    def __init__(
+        self,
+        path: Path,
+        buffer: mmap.mmap,
+        specs: Sequence[ChannelSpec],
+        capacities: Sequence[int],
+        offset: int,
+    ) -> None:
         self.path = path
         self.specs = {spec.name: spec for spec in specs}
         self._buffer = buffer
@@ -55,7 +61,9 @@ class SampleRing:
             No room for the file.
         """
         capacities = [int(np.ceil(spec.rate_hz * seconds)) for spec in specs]
-        header = json.dumps({"channels": [spec.to_mapping() for spec in specs], "capacities": capacities}).encode()
+        header = json.dumps(
+            {"channels": [spec.to_mapping() for spec in specs], "capacities": capacities}
+        ).encode()
         start = _padded(16 + len(header))
         size = start + sum(
             _ALIGN + _padded(capacity * np.dtype(spec.dtype).itemsize)
@@ -66,8 +74,11 @@ class SampleRing:
             os.posix_fallocate(fd, 0, size)
             buffer = mmap.mmap(fd, size)
         except OSError as error:
-            raise DeviceError(f"no room for {size / 1e6:.0f} MB of samples: {error.strerror}.", place=str(path),
-                              remedy="Free memory in /dev/shm.") from error
+            raise DeviceError(
+                f"no room for {size / 1e6:.0f} MB of samples: {error.strerror}.",
+                place=str(path),
+                remedy="Free memory in /dev/shm.",
+            ) from error
         finally:
             os.close(fd)
         buffer[16 : 16 + len(header)] = header
@@ -127,8 +138,15 @@ class SampleRing:
         self._counts[name][0] = start + n
         return start, start + n
 
-    def read(self, name: str, start: int, stop: int, *, timeout_s: float = 10.0,
-             keep_waiting: Callable[[], bool] | None = None) -> NDArray[Any]:
+    def read(
+        self,
+        name: str,
+        start: int,
+        stop: int,
+        *,
+        timeout_s: float = 10.0,
+        keep_waiting: Callable[[], bool] | None = None,
+    ) -> NDArray[Any]:
         """Copy of samples [start, stop), shape (stop - start,); waits until they are written.
 
         Parameters
@@ -151,16 +169,20 @@ class SampleRing:
         out[:first] = data[at : at + first]
         out[first:] = data[: n - first]
         if int(count[0]) - start > capacity or n > capacity:
-            raise RecordingError(f"samples {start}...{stop} of {name} were overwritten before they were read.",
-                                 place=str(self.path), remedy="The machine is too slow for this recording.")
+            raise RecordingError(
+                f"samples {start}...{stop} of {name} were overwritten before they were read.",
+                place=str(self.path),
+                remedy="The machine is too slow for this recording.",
+            )
         return out
 
     def _wait(self, name: str, stop: int, timeout_s: float, keep_waiting: Callable[[], bool] | None) -> None:
         deadline = time.monotonic() + timeout_s
         while int(self._counts[name][0]) < stop:
             if time.monotonic() > deadline or (keep_waiting is not None and not keep_waiting()):
-                raise RecordingError(f"sample {stop} of {name} has not arrived within {timeout_s:g} s.",
-                                     place=str(self.path))
+                raise RecordingError(
+                    f"sample {stop} of {name} has not arrived within {timeout_s:g} s.", place=str(self.path)
+                )
             time.sleep(0.0001)
 
     def close(self) -> None:

@@ -116,7 +116,8 @@ class Listener:
             self._sock.bind(str(path))
         except OSError as error:
             raise DeviceError(
-                f"cannot listen: {error.strerror or error}", place=str(path),
+                f"cannot listen: {error.strerror or error}",
+                place=str(path),
                 remedy="The path must be writable and shorter than 108 characters; set TMPDIR to a short path.",
             ) from error
         os.chmod(path, 0o600)
@@ -170,7 +171,8 @@ def connect(path: Path, timeout_s: float = 10.0, name: str = "") -> Link:
             sock.close()
             if time.monotonic() >= deadline:
                 raise DeviceError(
-                    f"no process answers within {timeout_s:g} s", place=str(path),
+                    f"no process answers within {timeout_s:g} s",
+                    place=str(path),
                     remedy="Look at the log of that process in the campaign folder.",
                 ) from error
             time.sleep(0.01)
