@@ -1,0 +1,296 @@
+"""The brake as a mechanical system: coupling forces (eqs 2-17), matrices M, D, K and the state matrix A (eq 27).
+
+One table of coupling elements, read from the brake file, gives both the loop over couplings that computes forces (as
+the paper's simulation code does, so that forces can be recorded) and the matrices.
+Conventions: displacement of a point r of body i: u = (x - phi ry, y + phi rx) (eq 10); relative displacement
+du = u(first) - u(second); an element's force F acts as -F on the first and +F on the second body (eqs 12, 13). At a
+contact the first body is the pad; friction pushes pads towards +x.
+NOT its job: reading and checking brake files (`spec`), eigenvalues (`stability`), time integration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_hardware.brake_model.spec import BrakeSpec, Contact, load_spec
+
+Array = NDArray[np.float64]
+
+#: friction force of a contact (N, towards +x on the pad, deviation from its mean) from the contact's index, the
+#: relative velocity pad minus disc along x (m/s) and the variation of the compression force (N)
+ContactFriction = Callable[[int, float, float], float]
+
+_FREEDOMS = ("x", "y", "phi")
+
+
+@dataclass(frozen=True)
+class Element:
+    """A coupling element with numbers: entry of table g (translational, eq 16).
+
+    Attributes
+    ----------
+    row_x, row_y : (n_dof,) relative displacement of its two points along x, y per degree of freedom
+    stiffness_n_m, damping_ns_m : values along (x, y)
+    side : +1 or -1 at a contact (see `spec.Contact`), 0 otherwise
+    load_share : part of the pad force at a contact, 0 otherwise
+    pad : name of the pad at a contact, "" otherwise
+    """
+
+    name: str
+    row_x: Array
+    row_y: Array
+    stiffness_n_m: tuple[float, float]
+    damping_ns_m: tuple[float, float]
+    side: int = 0
+    load_share: float = 0.0
+    pad: str = ""
+
+
+@dataclass(frozen=True)
+class TorsionElement:
+    """Entry of table h (eq 17). `row`: (n_dof,) relative rotation per degree of freedom."""
+
+    name: str
+    row: Array
+    stiffness_nm_rad: float
+    damping_nms_rad: float
+
+
+class Brake:
+    """A brake assembled from its coupling tables. Immutable; SI units.
+
+    Attributes
+    ----------
+    freedoms : names of the degrees of freedom, "body.x", "body.y" or "body.phi", in the order of all vectors
+    elements, torsions : coupling tables g and h with numbers
+    mu, slope_s_m, piston_area_m2, effective_radius_m : operating values of the brake file
+    """
+
+    def __init__(self, spec: BrakeSpec) -> None:
+        self.spec = spec
+        self.name = spec.name
+        self.mu = spec.operating.mu.value
+        self.slope_s_m = spec.operating.slope.value
+        self.piston_area_m2 = spec.operating.piston_area.value
+        self.effective_radius_m = spec.operating.effective_radius.value
+        self.freedoms = tuple(f"{body.name}.{f}" for body in spec.bodies for f in _FREEDOMS if f in body.freedoms)
+        self._index = {name: i for i, name in enumerate(self.freedoms)}
+        self._values = spec.evaluated()
+        self.inertia = self._inertias()
+        self.elements = tuple(self._element(coupling) for coupling in spec.couplings)
+        self.torsions = tuple(
+            TorsionElement(
+                torsion.name,
+                self._freedom_row(torsion.between[0], "phi") - self._freedom_row(torsion.between[1], "phi"),
+                self._values[f"torsions '{torsion.name}': stiffness"],
+                self._values.get(f"torsions '{torsion.name}': damping", 0.0),
+            )
+            for torsion in spec.torsions
+        )
+
+    # -- structure -------------------------------------------------------------------------------------------------
+
+    @property
+    def n_dof(self) -> int:
+        """Number of degrees of freedom."""
+        return len(self.freedoms)
+
+    @cached_property
+    def contacts(self) -> tuple[Element, ...]:
+        """The friction contacts, in the order of table g."""
+        return tuple(element for element in self.elements if element.side)
+
+    def freedom_index(self, name: str) -> int:
+        """Index of a degree of freedom ("disc.y") in all vectors.
+
+        Raises
+        ------
+        KeyError
+            unknown name; the message lists the known ones
+        """
+        if name not in self._index:
+            raise KeyError(f"unknown degree of freedom {name!r}; the brake has: {', '.join(self.freedoms)}")
+        return self._index[name]
+
+    def with_parameters(self, **changes: float) -> Brake:
+        """Return the same brake with other parameter values (SI), checked as a file is.
+
+        Raises
+        ------
+        KeyError
+            unknown parameter
+        pydantic.ValidationError
+            the changed brake is refused
+        """
+        return Brake(self.spec.with_values(changes))
+
+    def _freedom_row(self, body: str, freedom: str) -> Array:
+        row = np.zeros(self.n_dof)
+        if f"{body}.{freedom}" in self._index:
+            row[self._index[f"{body}.{freedom}"]] = 1.0
+        return row
+
+    def _inertias(self) -> Array:
+        values = self._values
+        keys = {"x": "mass", "y": "mass", "phi": "inertia"}
+        pairs = (name.rsplit(".", 1) for name in self.freedoms)
+        return np.array([values[f"bodies '{body}': {keys[freedom]}"] for body, freedom in pairs])
+
+    def _point_rows(self, key: str) -> tuple[Array, Array]:
+        """Displacement of a connecting point per degree of freedom, along x and y (eq 10)."""
+        body = key.split(".")[0]
+        r_x, r_y = self._values[f"points '{key}': x"], self._values[f"points '{key}': y"]
+        rotation = self._freedom_row(body, "phi")
+        return self._freedom_row(body, "x") - r_y * rotation, self._freedom_row(body, "y") + r_x * rotation
+
+    def _element(self, coupling: object) -> Element:
+        name, (first, second) = coupling.name, coupling.between  # type: ignore[attr-defined]
+        first_x, first_y = self._point_rows(first)
+        second_x, second_y = self._point_rows(second)
+
+        def value(key: str) -> float:
+            return self._values.get(f"couplings '{name}': {key}", 0.0)
+
+        rows = (first_x - second_x, first_y - second_y)
+        if isinstance(coupling, Contact):
+            return Element(
+                name,
+                *rows,
+                (0.0, value("stiffness")),
+                (0.0, value("damping")),
+                side=coupling.side,
+                load_share=coupling.load_share,
+                pad=first.split(".")[0],
+            )
+        return Element(
+            name, *rows, (value("stiffness_x"), value("stiffness_y")), (value("damping_x"), value("damping_y"))
+        )
+
+    # -- forces: the loop over coupling elements ---------------------------------------------------------------------
+
+    def coupling_forces(
+        self, displacement: Array, velocity: Array, friction: ContactFriction
+    ) -> tuple[Array, Array]:
+        """Forces and moments of all coupling elements, as they act on the second body.
+
+        Parameters
+        ----------
+        displacement, velocity : (n_dof,) m or rad, m/s or rad/s, from the steadily sliding state
+        friction : deviation of each contact's friction force from its mean
+
+        Returns
+        -------
+        forces : (n_elements, 2) N along x and y (eq 16)
+        moments : (n_torsions,) N m (eq 17)
+        """
+        forces = np.zeros((len(self.elements), 2))
+        contact = 0
+        for index, element in enumerate(self.elements):
+            dx, dy = element.row_x @ displacement, element.row_y @ displacement
+            vx, vy = element.row_x @ velocity, element.row_y @ velocity
+            forces[index, 0] = element.stiffness_n_m[0] * dx + element.damping_ns_m[0] * vx  # eq 16
+            forces[index, 1] = element.stiffness_n_m[1] * dy + element.damping_ns_m[1] * vy  # eq 16
+            if element.side:
+                # -F acts on the pad, so friction towards +x on the pad enters with a minus
+                forces[index, 0] -= friction(contact, float(vx), float(element.side * forces[index, 1]))
+                contact += 1
+        moments = np.array(
+            [
+                torsion.stiffness_nm_rad * (torsion.row @ displacement) + torsion.damping_nms_rad * (torsion.row @ velocity)
+                for torsion in self.torsions
+            ]
+        )  # eq 17
+        return forces, moments
+
+    def accelerations(
+        self, displacement: Array, velocity: Array, friction: ContactFriction, external: Array | None = None
+    ) -> Array:
+        """Accelerations (n_dof,) by Newton and Euler (eqs 2, 3) from the loop over couplings (eqs 6, 7).
+
+        `external`: (n_dof,) forces and moments on the bodies (N, N m).
+        """
+        forces, moments = self.coupling_forces(displacement, velocity, friction)
+        total = np.zeros(self.n_dof) if external is None else external.astype(float)
+        for element, force in zip(self.elements, forces, strict=True):
+            total = total - element.row_x * force[0] - element.row_y * force[1]  # eqs 6, 7, 12, 13
+        for torsion, moment in zip(self.torsions, moments, strict=True):
+            total = total - torsion.row * moment  # eqs 7, 14, 15
+        return total / self.inertia  # eqs 2, 3
+
+    # -- matrices ------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def mass_matrix(self) -> Array:
+        """M, (n_dof, n_dof), kg and kg m2 (eq 5)."""
+        return np.diag(self.inertia)
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array, Array, Array, Array]:
+        """K without friction, its derivative by mu, the same for D, and dD/d(k N) of falling friction."""
+        k0, k1, d0, d1, d2 = (np.zeros((self.n_dof, self.n_dof)) for _ in range(5))
+        for element in self.elements:
+            for row, stiffness, damping in zip(
+                (element.row_x, element.row_y), element.stiffness_n_m, element.damping_ns_m, strict=True
+            ):
+                k0 += stiffness * np.outer(row, row)
+                d0 += damping * np.outer(row, row)
+            if element.side:  # friction: F_x = -mu N~ with N~ = side (c du_y + d dv_y), and -k N w dv_x
+                across = np.outer(element.row_x, element.row_y)
+                k1 -= element.side * element.stiffness_n_m[1] * across
+                d1 -= element.side * element.damping_ns_m[1] * across
+                d2 -= element.load_share * np.outer(element.row_x, element.row_x)
+        for torsion in self.torsions:
+            k0 += torsion.stiffness_nm_rad * np.outer(torsion.row, torsion.row)
+            d0 += torsion.damping_nms_rad * np.outer(torsion.row, torsion.row)
+        return k0, k1, d0, d1, d2
+
+    def stiffness_matrix(self, mu: float = 0.0) -> Array:
+        """K(mu), (n_dof, n_dof); not symmetric for mu > 0 (nonconservative forces, section 2.2)."""
+        k0, k1, *_ = self._parts
+        return k0 + mu * k1
+
+    def damping_matrix(self, mu: float = 0.0, slope_s_m: float = 0.0, pad_force_n: float = 0.0) -> Array:
+        """D(mu, k, N), (n_dof, n_dof); falling friction of slope k adds negative damping k N (eq 31)."""
+        _, _, d0, d1, d2 = self._parts
+        return d0 + mu * d1 + slope_s_m * pad_force_n * d2
+
+    def pad_force_n(self, pressure_pa: float) -> float:
+        """Mean normal force of one pad at a brake pressure."""
+        return pressure_pa * self.piston_area_m2
+
+    def state_matrix(
+        self, mu: float | None = None, slope_s_m: float | None = None, pressure_pa: float = 0.0
+    ) -> Array:
+        """State matrix A of (displacements, velocities), (2 n_dof, 2 n_dof) (eq 27).
+
+        Parameters
+        ----------
+        mu : coefficient of friction; the brake file's where None
+        slope_s_m : falling slope k of the friction law (eq 28); the brake file's where None
+        pressure_pa : brake pressure
+        """
+        mu = self.mu if mu is None else mu
+        slope = self.slope_s_m if slope_s_m is None else slope_s_m
+        n = self.n_dof
+        matrix = np.zeros((2 * n, 2 * n))
+        matrix[:n, n:] = np.eye(n)
+        matrix[n:, :n] = -self.stiffness_matrix(mu) / self.inertia[:, None]  # eq 27
+        matrix[n:, n:] = -self.damping_matrix(mu, slope, self.pad_force_n(pressure_pa)) / self.inertia[:, None]
+        return matrix
+
+
+def load_brake(path: str | Path) -> Brake:
+    """Read a brake file and assemble it.
+
+    Raises
+    ------
+    OSError, tomllib.TOMLDecodeError, pydantic.ValidationError
+        not readable, not TOML, refused (see `spec`)
+    """
+    return Brake(load_spec(path))

@@ -1,0 +1,169 @@
+"""Stability of the steadily sliding brake: eigenvalues of A (eq 27), onset of squeal over pressure or friction.
+
+NOT its job: time integration, sensitivities (eqs 24, 25), printing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_hardware.brake_model.assembly import Brake
+
+PA_PER_BAR = 1e5
+
+#: relative imaginary part below which an eigenvalue counts as real
+_REAL = 1e-9
+
+
+@dataclass(frozen=True)
+class EigenPair:
+    """A conjugate pair of eigenvalues, or one real eigenvalue (frequency 0).
+
+    Attributes
+    ----------
+    frequency_hz : imaginary part / 2 pi
+    damping_ratio : -Re / |lambda|; negative: unstable
+    real_part_1_s : growth rate of the amplitude
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    real_part_1_s: float
+
+    @property
+    def unstable(self) -> bool:
+        """Whether a small motion of this pair grows."""
+        return self.real_part_1_s > 0.0
+
+
+@dataclass(frozen=True)
+class Onset:
+    """Where the first pair becomes unstable: `value` in bar or as mu (see the function), and its frequency.
+
+    `frequency_hz` = 0 means that the brake diverges without vibrating.
+    """
+
+    value: float
+    frequency_hz: float
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What the model predicts: pairs without pressure and at `pressure_max_bar`, onset or None where stable."""
+
+    brake: str
+    mu: float
+    slope_s_m: float
+    pressure_max_bar: float
+    pairs: tuple[EigenPair, ...]
+    pairs_at_max: tuple[EigenPair, ...]
+    onset_pressure_bar: float | None
+    onset_frequency_hz: float | None
+
+    @property
+    def stable(self) -> bool:
+        """Whether no pair becomes unstable within the range."""
+        return self.onset_pressure_bar is None
+
+
+def eigen_pairs(
+    brake: Brake, mu: float | None = None, slope_s_m: float | None = None, pressure_bar: float = 0.0
+) -> tuple[EigenPair, ...]:
+    """Return the eigenvalue pairs of a brake, sorted by frequency.
+
+    Parameters
+    ----------
+    mu, slope_s_m : coefficient of friction and falling slope k (s/m); the brake file's where None
+    pressure_bar : brake pressure; acts only with k > 0
+    """
+    values = np.linalg.eigvals(brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR))
+    return _pairs(values)
+
+
+def onset_pressure(
+    brake: Brake,
+    mu: float | None = None,
+    slope_s_m: float | None = None,
+    pressure_max_bar: float = 25.0,
+    *,
+    steps: int = 100,
+) -> Onset | None:
+    """Return the lowest pressure (bar) at which a pair becomes unstable, or None where stable through the range.
+
+    The range from 0 is scanned in `steps` steps and the first change of sign refined (Brent).
+    """
+    return _first_crossing(
+        lambda pressure: brake.state_matrix(mu, slope_s_m, pressure * PA_PER_BAR), pressure_max_bar, steps
+    )
+
+
+def onset_mu(
+    brake: Brake, slope_s_m: float | None = None, pressure_bar: float = 0.0, mu_max: float = 1.0, *, steps: int = 100
+) -> Onset | None:
+    """Return the lowest coefficient of friction at which a pair becomes unstable, or None up to `mu_max`."""
+    return _first_crossing(lambda mu: brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR), mu_max, steps)
+
+
+def predict(
+    brake: Brake, mu: float | None = None, slope_s_m: float | None = None, pressure_max_bar: float = 25.0
+) -> Prediction:
+    """Return pairs and onset of a brake over the pressures 0 to `pressure_max_bar` (section 5.2).
+
+    `mu` and `slope_s_m` are the brake file's where None.
+    """
+    mu = brake.mu if mu is None else mu
+    slope = brake.slope_s_m if slope_s_m is None else slope_s_m
+    onset = onset_pressure(brake, mu, slope, pressure_max_bar)
+    return Prediction(
+        brake=brake.name,
+        mu=mu,
+        slope_s_m=slope,
+        pressure_max_bar=pressure_max_bar,
+        pairs=eigen_pairs(brake, mu, slope, 0.0),
+        pairs_at_max=eigen_pairs(brake, mu, slope, pressure_max_bar),
+        onset_pressure_bar=None if onset is None else onset.value,
+        onset_frequency_hz=None if onset is None else onset.frequency_hz,
+    )
+
+
+def _pairs(values: NDArray[np.complex128]) -> tuple[EigenPair, ...]:
+    kept = values[values.imag >= -_REAL * np.abs(values)]
+    pairs = [
+        EigenPair(
+            frequency_hz=float(value.imag) / (2.0 * math.pi) if value.imag > _REAL * abs(value) else 0.0,
+            damping_ratio=-float(value.real) / abs(value) if value != 0.0 else 0.0,
+            real_part_1_s=float(value.real),
+        )
+        for value in kept
+    ]
+    return tuple(sorted(pairs, key=lambda pair: (pair.frequency_hz, pair.real_part_1_s)))
+
+
+def _first_crossing(matrix: Callable[[float], NDArray[np.float64]], top: float, steps: int) -> Onset | None:
+    if not (math.isfinite(top) and top > 0.0):
+        raise ValueError(f"the end of the range is {top!r}; give a positive number")
+    if steps < 1:
+        raise ValueError(f"steps is {steps!r}; give at least 1")
+    grid = np.linspace(0.0, top, steps + 1)
+    growth = np.linalg.eigvals(np.stack([matrix(float(value)) for value in grid])).real.max(axis=1)
+    unstable = np.flatnonzero(growth > 0.0)
+    if unstable.size == 0:
+        return None
+    first = int(unstable[0])
+    value = 0.0
+    if first > 0:
+        from scipy.optimize import brentq  # noqa: PLC0415 (scipy only when an onset is refined)
+
+        value = float(
+            brentq(
+                lambda x: float(np.linalg.eigvals(matrix(x)).real.max()), grid[first - 1], grid[first], xtol=1e-10 * top
+            )
+        )
+    at_onset = np.linalg.eigvals(matrix(value))
+    critical = at_onset[int(np.argmax(at_onset.real))]
+    return Onset(value, abs(float(critical.imag)) / (2.0 * math.pi))
