@@ -125,6 +125,15 @@ class _PressureShape(Data, ABC):
     def offsets_bar(self) -> tuple[float, float]:
         """Lower and upper bound of the deviation from the working point."""
 
+    def _swing_bar_s(self, duration_s: float) -> float:
+        """Largest rate of change after the rise. Steps count as none: the actuator sets their rate."""
+        return 0.0
+
+    def rate_bar_s(self, working_point_bar: float, duration_s: float) -> float:
+        """Upper bound of the rate of change, rise included; without a rise time the onset is a step."""
+        rise_bar_s = self.max_bar(working_point_bar) / self.rise_s if self.rise_s > 0 else 0.0
+        return rise_bar_s + self._swing_bar_s(duration_s)
+
     def pressure_bar(self, t_s: float, working_point_bar: float, duration_s: float) -> float:
         """Wanted pressure at `t_s` after the pressure came on; held outside 0 ... `duration_s`."""
         t_s = min(max(t_s, 0.0), duration_s)
@@ -169,6 +178,9 @@ class RampPressure(_Swinging):
         course = 2.0 * t_s / duration_s - 1.0
         return self.amplitude_bar * (course if self.direction == "rising" else -course)
 
+    def _swing_bar_s(self, duration_s: float) -> float:
+        return 2.0 * self.amplitude_bar / duration_s
+
 
 class SinePressure(_Swinging):
     """Sine around the working point, beginning there and rising."""
@@ -178,6 +190,9 @@ class SinePressure(_Swinging):
 
     def _offset_bar(self, t_s: float, duration_s: float) -> float:
         return self.amplitude_bar * math.sin(2.0 * math.pi * self.frequency_hz * t_s)
+
+    def _swing_bar_s(self, duration_s: float) -> float:
+        return 2.0 * math.pi * self.frequency_hz * self.amplitude_bar
 
 
 class TrianglePressure(_Swinging):
@@ -189,6 +204,9 @@ class TrianglePressure(_Swinging):
     def _offset_bar(self, t_s: float, duration_s: float) -> float:
         phase = (self.frequency_hz * t_s + 0.25) % 1.0
         return self.amplitude_bar * (1.0 - abs(4.0 * phase - 2.0))
+
+    def _swing_bar_s(self, duration_s: float) -> float:
+        return 4.0 * self.frequency_hz * self.amplitude_bar
 
 
 class StepsPressure(_PressureShape):

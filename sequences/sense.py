@@ -47,7 +47,7 @@ def _temperature_use(sequence: Sequence) -> PydanticCustomError | None:
         return None
     return refuse(
         "temperatures_unused",
-        "{value} temperatures are listed, but conditioning is off",
+        "temperatures_degc has {value} entries, but conditioning is off",
         "set conditioning.enabled = true, or remove temperatures_degc",
         len(sequence.temperatures_degc),
     )
@@ -95,7 +95,7 @@ def _too_hot(sequence: Sequence) -> PydanticCustomError | None:
         return None
     return refuse(
         "set_point_above_limit",
-        "set-point {value} degC is above limits.max_degc = {most}",
+        "temperatures_degc: {value} degC is above limits.max_degc = {most}",
         "lower the temperature, or raise limits.max_degc if brake and rig allow it",
         hottest,
         most=sequence.limits.max_degc,
@@ -108,7 +108,7 @@ def _negative_pressure(sequence: Sequence) -> PydanticCustomError | None:
         return None
     return refuse(
         "negative_pressure",
-        "the working point {value} bar minus the amplitude is {low} bar",
+        "pressures_bar: the working point {value} bar less the amplitude is {low} bar",
         "raise the working point or reduce the amplitude: the pressure cannot be negative",
         lowest,
         low=sequence.pressure_function.min_bar(lowest),
@@ -121,7 +121,7 @@ def _rise(sequence: Sequence) -> PydanticCustomError | None:
         return None
     return refuse(
         "rise_too_long",
-        "rise_s = {value} is not shorter than the braking of {shortest_s} s",
+        "pressure_function.rise_s = {value} is not shorter than the braking of {shortest_s} s",
         "shorten rise_s or lengthen the braking",
         sequence.pressure_function.rise_s,
         shortest_s=shortest_s,
