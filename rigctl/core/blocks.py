@@ -30,6 +30,8 @@ class Block:
         For each channel the range [start, stop) of its sample count in the ring.
     ring : SampleRing
         Where the samples are.
+    stride : int
+        1 while recording. Otherwise a rig may deliver every `stride`-th sample of its slow channels only.
     status : mapping
         Status of the devices as they reported it: relay, drive state, faults.
     """
@@ -39,6 +41,7 @@ class Block:
     dt_ns: int
     ranges: Mapping[str, tuple[int, int]]
     ring: SampleRing
+    stride: int = 1
     status: Mapping[str, Any] = field(default_factory=dict)
 
     @property

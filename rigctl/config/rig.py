@@ -1,0 +1,113 @@
+"""The rig file: which devices make up the rig, what it can do, and the geometry of the brake on it.
+
+Job: frozen model of `configs/rigs/*.toml`. Settings of a device are passed to its class unread: the class
+validates them. Not its job: the watchdog's limits (their own file, read by the watchdog itself) and the
+physics of a simulated rig (`sim_hardware.plant`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+
+ROLES = ("drive", "pressure", "ventilator", "acquisition", "safety")
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class DeviceConfig(BaseModel):
+    """One device: its kind (see the registry) and the settings that its class reads."""
+
+    model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
+    kind: Annotated[str, Field(min_length=1)]
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Everything but the kind."""
+        return dict(self.model_extra or {})
+
+
+class Devices(_Frozen):
+    """The five roles that every rig fills."""
+
+    drive: DeviceConfig
+    pressure: DeviceConfig
+    ventilator: DeviceConfig
+    acquisition: DeviceConfig
+    safety: DeviceConfig
+
+
+class Capabilities(_Frozen):
+    """What set-points the rig accepts. Every program is checked against these before anything moves."""
+
+    max_pressure_bar: Annotated[float, Field(gt=0, le=200)]
+    max_speed_rpm: Annotated[float, Field(gt=0, le=3000)]
+    max_speed_ramp_rpm_per_s: Positive
+    max_torque_nm: Positive
+    max_power_kw: Positive
+    max_disc_temperature_degc: Annotated[float, Field(gt=0, le=900)]
+    ambient_degc: Annotated[float, Field(ge=-20, le=60)] = 20.0
+    min_conditioning_margin_k: Positive = 4.0
+    ventilator_max_m3_h: NotNegative
+
+
+class Estimates(_Frozen):
+    """Lumped values for the estimate of a program's duration; they do not influence the run."""
+
+    heat_capacity_j_k: Positive
+    heat_loss_still_w_k: Positive
+    heat_loss_ventilated_w_k: Positive
+    mu: Positive = 0.42
+
+
+class ConditioningConfig(_Frozen):
+    """How the disc is brought to a temperature: by dragging the brake, or by the ventilator."""
+
+    heating_speed_rpm: Positive
+    heating_pressure_bar: Positive
+    cooling_speed_rpm: Positive
+    soak_speed_rpm: Positive
+    idle_block_s: Annotated[float, Field(ge=0.05, le=1.0)] = 0.5
+    ventilator_settle_s: NotNegative = 3.0
+
+
+class FrictionConfig(_Frozen):
+    """Geometry that turns torque and pressure into a coefficient of friction: mu = M / (2 (p - p0) A r)."""
+
+    piston_area_m2: Annotated[float, Field(gt=0, le=0.1)]
+    effective_radius_m: Annotated[float, Field(gt=0, le=1.0)]
+    p0_bar: NotNegative = 0.5
+
+
+class PredictionConfig(_Frozen):
+    """The engineer's model of the brake on the rig, for the comparison in the report."""
+
+    brake: Path
+
+
+class SafetyConfig(_Frozen):
+    """Where the watchdog finds its limits."""
+
+    limits: Path
+
+
+class RigConfig(_Frozen):
+    """A rig file, validated. Paths are resolved against the folder of the file by `rigctl.config.rig_file`."""
+
+    name: Annotated[str, Field(min_length=1, max_length=120)]
+    simulated: bool
+    devices: Devices
+    capabilities: Capabilities
+    estimates: Estimates
+    conditioning: ConditioningConfig
+    friction: FrictionConfig
+    safety: SafetyConfig
+    prediction: PredictionConfig | None = None
+    block_s: Annotated[float, Field(ge=0.01, le=0.5)] = 0.05

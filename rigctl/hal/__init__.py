@@ -1,0 +1,1 @@
+"""Hardware abstraction: device interfaces, the registry of kinds, and the `Rig` built from a rig file."""

@@ -1,0 +1,278 @@
+"""The simulated rig as a process: stands for the hardware, and outlives the controller as hardware does.
+
+Job: step the plant in lockstep with the controller and the watchdog (virtual time) or by the wall clock
+(real time); be the safety relay: open without fresh edges, torque off and pressure vented while open; go on
+alone to standstill when the controller is gone. Not its job: physics (`sim_hardware.plant`).
+
+The order of messages is in `docs/explanation/processes.md`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import select
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from rigctl.core.errors import DeviceError, LinkClosed, RigctlError
+from rigctl.core.wire import Link, Listener
+from sim_hardware.devices.session import RING_NAME, SOCKET_NAME
+
+VIRTUAL_RELAY_TIMEOUT_S = 10.0  # wall clock: the watchdog process itself is late only when it is dead
+REAL_RELAY_TIMEOUT_S = 0.15
+LEASE_S = 0.25  # real time: set-points older than this are dropped
+FREE_RUN_BLOCK_NS = 50_000_000
+ORPHAN_TIMEOUT_S = 120.0  # nobody has connected, or nobody is left
+
+
+class RigServer:
+    """Lockstep between plant, controller and watchdog.
+
+    Parameters
+    ----------
+    plant : sim_hardware.plant.Plant
+    ring : SampleRing
+        Written here, read by controller and recorder.
+    real_time : bool
+        Pace blocks by the wall clock and do not wait for anybody.
+    """
+
+    def __init__(self, plant: Any, ring: Any, *, real_time: bool) -> None:
+        from sim_hardware.plant import Commands
+
+        self._plant = plant
+        self._ring = ring
+        self._real_time = real_time
+        self._relay_timeout_s = REAL_RELAY_TIMEOUT_S if real_time else VIRTUAL_RELAY_TIMEOUT_S
+        self._commands_type = Commands
+        self._controller: Link | None = None
+        self._safety: Link | None = None
+        self._relay = False
+        self._k = 0
+        self._t_ns = 0
+        self._step: dict[str, Any] | None = None
+        self._step_at = 0.0
+        self._answered = True
+        self._edge_at = time.monotonic()
+        self._poll = select.poll()
+
+    def connect(self, controller: Link | None, safety: Link | None) -> None:
+        """The two parties, once they have said hello."""
+        self._controller, self._safety = controller, safety
+        for link in (controller, safety):
+            if link is not None:
+                self._poll.register(link, select.POLLIN)
+
+    def run(self) -> None:
+        """Until both parties have left and the plant is at rest."""
+        next_tick = time.monotonic()
+        while True:
+            if self._real_time:
+                next_tick = self._wait_for_tick(next_tick)
+            elif not self._wait_for_lockstep():
+                continue
+            if self._controller is None and self._safety is None and self._at_rest():
+                return
+            self._advance()
+
+    # -- time -----------------------------------------------------------------------------------
+
+    def _wait_for_lockstep(self) -> bool:
+        """Wait for the controller's step and the watchdog's answer. True when the plant may go on."""
+        if self._step is not None and self._answered:
+            return True
+        if self._relay and time.monotonic() - self._edge_at > self._relay_timeout_s:
+            self._open_relay("no edge of the watchdog in time")
+        if not self._relay and self._answered and self._step is None and not self._at_rest():
+            # The controller is silent or gone and the relay is open: the shaft runs down by itself.
+            self._pump(0.0 if self._controller is None else 0.05)
+            return self._answered
+        if self._controller is None and self._safety is None:
+            self._open_relay("nobody is connected")
+            return True
+        if self._controller is None and self._answered and self._at_rest():
+            self._pump(0.2)
+            return False
+        self._pump(0.5)
+        return False
+
+    def _wait_for_tick(self, due: float) -> float:
+        """Real time: handle messages until the block's length has passed."""
+        dt_s = (self._step["dt_ns"] if self._step else FREE_RUN_BLOCK_NS) * 1e-9
+        due = max(due, time.monotonic() - dt_s) + dt_s
+        while (left := due - time.monotonic()) > 0:
+            self._pump(left)
+            if self._relay and time.monotonic() - self._edge_at > self._relay_timeout_s:
+                self._open_relay("no edge of the watchdog in time")
+        if self._step is not None and time.monotonic() - self._step_at > LEASE_S:
+            self._step = None  # set-points are leases
+        return due
+
+    def _pump(self, timeout_s: float) -> None:
+        """Read what has arrived; a closed link is dropped."""
+        for fd, _ in self._poll.poll(timeout_s * 1000.0):
+            if self._controller is not None and fd == self._controller.fileno():
+                self._controller = self._read(self._controller, self._on_controller)
+            elif self._safety is not None and fd == self._safety.fileno():
+                self._safety = self._read(self._safety, self._on_safety)
+                if self._safety is None:
+                    self._answered = True
+                    self._open_relay("the watchdog has gone")
+
+    def _read(self, link: Link, handle: Any) -> Link | None:
+        try:
+            message = link.recv(0)
+            if message is not None:
+                handle(message)
+            return link
+        except RigctlError as error:
+            print(f"rig server: {error}", file=sys.stderr, flush=True)
+            self._poll.unregister(link)
+            link.close()
+            return None
+
+    # -- parties --------------------------------------------------------------------------------
+
+    def _on_controller(self, message: dict[str, Any]) -> None:
+        if message.get("m") == "step":
+            self._step = message
+            self._step_at = time.monotonic()
+
+    def _on_safety(self, message: dict[str, Any]) -> None:
+        kind = message.get("m")
+        if kind == "open":
+            self._open_relay(str(message.get("reason", "")))
+        elif kind == "close":
+            self._relay = True
+        if kind in ("edge", "close"):
+            self._edge_at = time.monotonic()
+        if message.get("k") == self._k - 1:
+            self._answered = True
+
+    def _open_relay(self, reason: str) -> None:
+        if self._relay:
+            print(f"rig server: safety relay opened: {reason}", file=sys.stderr, flush=True)
+        self._relay = False
+
+    # -- plant ----------------------------------------------------------------------------------
+
+    def _at_rest(self) -> bool:
+        truth = self._plant.truth
+        return truth.pressure_bar < 0.5 and abs(truth.speed_rpm) < 0.5
+
+    def _advance(self) -> None:
+        step = self._step
+        dt_ns = step["dt_ns"] if step else FREE_RUN_BLOCK_NS
+        recording = bool(step and step["recording"])
+        commands = self._commands(step["set"] if step else None)
+        result = self._plant.step(dt_ns, commands, full_rate=recording)
+        ranges = {name: self._ring.write(name, samples) for name, samples in result.samples.items()}
+        spec = self._plant.sound_channel
+        written = self._ring.written(spec.name)
+        n_sound = round(spec.rate_hz * dt_ns * 1e-9) if recording else 0
+        ranges[spec.name] = (written, written + n_sound)
+        status = {"relay": self._relay, "enabled": commands.drive_enabled, "estop": True, "doors": True}
+        end_s = (self._t_ns + dt_ns) * 1e-9
+        message = {
+            "m": "block", "k": self._k, "t_ns": self._t_ns, "dt_ns": dt_ns, "stride": result.stride,
+            "ranges": ranges, "status": status,
+        }  # fmt: skip
+        sample = {"m": "sample", "k": self._k, "t": end_s, "dt": dt_ns * 1e-9, **result.safety, **status}
+        self._k += 1
+        self._t_ns += dt_ns
+        self._answered = self._safety is None
+        if self._safety is not None:
+            self._safety = self._send(self._safety, sample)
+        if self._controller is not None and step is not None:
+            if not self._real_time:
+                self._step = None
+            self._controller = self._send(self._controller, message)
+        if recording:
+            # The sound follows while the others are thinking; readers wait for it at the ring.
+            self._ring.write(spec.name, self._plant.render_sound())
+
+    def _commands(self, points: dict[str, Any] | None) -> Any:
+        """Set-points as the hardware sees them: the open relay takes torque and pressure away."""
+        points = points or {}
+        return self._commands_type(
+            speed_set_rpm=float(points.get("speed_rpm", 0.0)),
+            speed_ramp_rpm_per_s=float(points.get("ramp_rpm_per_s", 50.0)),
+            drive_enabled=bool(points.get("enable", False)) and self._relay,
+            quick_stop=bool(points.get("quick_stop", False)),
+            pressure_set_bar=float(points.get("pressure_bar", 0.0)),
+            vent=bool(points.get("vent", True)) or not self._relay,
+            ventilator_m3_h=float(points.get("ventilator_m3_h", 0.0))
+            if self._relay
+            else self._plant.ventilator_max_m3_h,
+            relay_closed=self._relay,
+        )
+
+    def _send(self, link: Link, message: dict[str, Any]) -> Link | None:
+        try:
+            link.send(message, timeout_s=0.05 if self._real_time else 5.0)
+            return link
+        except DeviceError as error:
+            print(f"rig server: {error}", file=sys.stderr, flush=True)
+            if isinstance(error, LinkClosed):
+                self._poll.unregister(link)
+                link.close()
+                return None
+            return link
+
+
+def accept_parties(listener: Listener) -> dict[str, Link]:
+    """Wait until controller and watchdog have connected and said which they are.
+
+    Raises
+    ------
+    DeviceError
+        One of them has not come in time.
+    """
+    parties: dict[str, Link] = {}
+    deadline = time.monotonic() + ORPHAN_TIMEOUT_S
+    while len(parties) < 2:
+        if time.monotonic() > deadline:
+            raise DeviceError("controller or watchdog have not connected.", place=str(listener.path))
+        link = listener.accept(1.0)
+        hello = link.recv(5.0) if link is not None else None
+        if link is not None and hello is not None and hello.get("role") in ("controller", "safety"):
+            parties[hello["role"]] = link
+        elif link is not None:
+            link.close()
+    return parties
+
+
+def main() -> None:
+    """Entry of ``python -m sim_hardware.devices.server``."""
+    parser = argparse.ArgumentParser(prog="rig server", description=__doc__)
+    parser.add_argument("--run-dir", type=Path, required=True)
+    parser.add_argument("--brake", type=Path, required=True)
+    parser.add_argument("--plant", type=Path, required=True)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--time", choices=("virtual", "real"), required=True)
+    options = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    listener = Listener(options.run_dir / SOCKET_NAME)  # before the slow imports: the others can connect
+
+    from rigctl.config.loading import load_model
+    from rigctl.core.ring import SampleRing
+    from sim_hardware.brake_model import Brake, load_brake
+    from sim_hardware.plant import Plant, PlantSettings
+
+    settings = load_model(options.plant, PlantSettings)
+    plant = Plant(settings, Brake(load_brake(options.brake)), seed=options.seed)
+    ring = SampleRing.create(options.run_dir / RING_NAME, plant.channels)
+    plant.compile()
+    server = RigServer(plant, ring, real_time=options.time == "real")
+    parties = accept_parties(listener)
+    parties["controller"].send({"m": "hello", "channels": [spec.to_mapping() for spec in plant.channels]})
+    server.connect(parties["controller"], parties["safety"])
+    listener.close()
+    server.run()
+
+
+if __name__ == "__main__":
+    main()
