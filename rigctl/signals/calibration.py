@@ -12,7 +12,7 @@ from pydantic import Field
 
 from rigctl.core.units import REFERENCE_PRESSURE_PA
 from rigctl.signals._model import FrozenModel
-from rigctl.signals.spectra import interpolate_peak, spectrogram
+from rigctl.signals.spectra import HANN_NOISE_BANDWIDTH, interpolate_peak, spectrogram
 
 _FLOOR_PA2 = 1e-30
 
@@ -98,14 +98,15 @@ def read_calibrator(counts: ArrayLike, rate_hz: float, level: float = 94.0) -> C
         raise ValueError("calibrator recording: all samples are zero. Check that the microphone is connected")
     peaks = [interpolate_peak(frame, k) for frame in spec.power]
     ms = np.array([p for _, p in peaks])
-    total = float(np.var(samples.astype(np.float64)))
     tone = float(ms.mean())
+    lines = np.arange(mean.size)
+    rest = float(mean[(lines > 2) & (np.abs(lines - k) > 8)].sum()) / HANN_NOISE_BANDWIDTH
     factor = float(np.sqrt(mean_square_pa2(level) / tone))
     return CalibratorReading(
         pa_per_count=factor,
         frequency_hz=float(np.mean([f for f, _ in peaks])) * rate_hz / 4096,
         level_spread_db=float(np.ptp(10.0 * np.log10(ms))),
-        tone_to_rest_db=float(10.0 * np.log10(tone / max(total - tone, 1e-12 * tone))),
+        tone_to_rest_db=float(10.0 * np.log10(tone / max(rest, 1e-12 * tone))),
     )
 
 

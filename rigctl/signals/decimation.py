@@ -12,6 +12,7 @@ bit.
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numba
 import numpy as np
@@ -38,7 +39,7 @@ class FilterDescription(FrozenModel):
     pass_band_hz: float
     pass_band_ripple_db: float
     stop_band_hz: float
-    stop_band_attenuation_db: float
+    stop_band_attenuation_db: float | None
     delay_s: float
     edges: str
 
@@ -52,7 +53,7 @@ class DecimationFilter:
     factor: int
     taps: NDArray[np.float64]
     ripple_db: float
-    attenuation_db: float
+    attenuation_db: float | None
 
     @property
     def delay(self) -> int:
@@ -93,13 +94,13 @@ def design_decimation(factor: int) -> DecimationFilter:
     if not 1 <= factor <= 1000:
         raise ValueError(f"decimation factor: {factor} is outside 1...1000. Decimate in stages")
     if factor == 1:
-        return DecimationFilter(1, np.ones(1), 0.0, float("inf"))
+        return DecimationFilter(1, np.ones(1), 0.0, None)
     width = (1.0 - PASS_BAND_SHARE) / factor
     n_taps, beta = kaiserord(_DESIGN_ATTENUATION_DB, width)
     n_taps += 1 - n_taps % 2
-    taps = np.asarray(
-        firwin(n_taps, (1.0 + PASS_BAND_SHARE) / 2 / factor, window=("kaiser", beta)), dtype=np.float64
-    )
+    edge = (1.0 + PASS_BAND_SHARE) / 2 / factor
+    window: Any = ("kaiser", beta)  # scipy's stub knows only names
+    taps = np.asarray(firwin(n_taps, edge, window=window), dtype=np.float64)
     w = np.linspace(0.0, np.pi, 32 * n_taps + 1)
     gain = np.abs(np.fft.rfft(taps, 64 * n_taps))
     pass_band = gain[w <= PASS_BAND_SHARE * np.pi / factor]

@@ -11,8 +11,8 @@ Rules, in the order in which they act (each is a key of `SquealDetection`):
    least `prominence_db - hysteresis_db` above the running median over +-`background_half_width_hz`, and at
    least `onset_excess_db` above the mean spectrum before pressure onset.
 2. Peaks within `tolerance_hz` or `tolerance_relative` join to tracks; gaps up to `merge_gap_s` are bridged.
-3. A track is an event when it once reached `threshold_db` and `prominence_db`, lasts `min_duration_s`, and is
-   present in at least half of its frames.
+3. A track is an event when it once reached `threshold_db`, lasts `min_duration_s`, and is prominent by the
+   full `prominence_db` in at least three and at least half of its frames.
 4. A track whose frequency follows the shaft speed is a shaft order, no event.
 5. Events at whole multiples of a louder, simultaneous event are its harmonics: `harmonic_of` is set, and they
    are not counted as squeal.
@@ -37,6 +37,7 @@ _MAX_PEAKS_PER_FRAME = 64
 _MAX_HARMONIC = 8
 _MIN_BACKGROUND_FRAMES = 3
 _MIN_PRESENCE = 0.5
+_MIN_CLEAR_FRAMES = 3
 _SMEAR_LINES = 3
 _MIN_ORDER_SPEED_CHANGE = 0.02
 _ORDER_SPREAD_RATIO = 0.5
@@ -56,7 +57,7 @@ class SquealDetection(FrozenModel):
     dynamic_range_db: float = Field(default=60.0, ge=20, le=120)
     onset_excess_db: float = Field(default=6.0, ge=0, le=40)
     tolerance_hz: float = Field(default=30.0, gt=0, le=500)
-    tolerance_relative: float = Field(default=0.01, ge=0, le=0.1)
+    tolerance_relative: float = Field(default=0.005, ge=0, le=0.1)
     min_duration_s: float = Field(default=0.2, gt=0, le=10)
     merge_gap_s: float = Field(default=0.15, ge=0, le=5)
     harmonic_tolerance: float = Field(default=0.01, ge=0, le=0.05)
@@ -229,12 +230,13 @@ def _tracks(
 
 def _is_event(track: _Track, spec: Spectrogram, settings: SquealDetection) -> bool:
     span = int(track.frames[-1] - track.frames[0]) + 1
-    if span * spec.hop_s < settings.min_duration_s or track.frames.size < _MIN_PRESENCE * span:
+    if span * spec.hop_s < settings.min_duration_s:
         return False
-    clear = (track.power >= mean_square_pa2(settings.threshold_db)) & (
-        track.ratio >= 10.0 ** (settings.prominence_db / 10.0)
-    )
-    return bool(clear.any())
+    # Single frames of loud noise are prominent by chance; three in a row at one frequency are not.
+    clear = np.count_nonzero(track.ratio >= 10.0 ** (settings.prominence_db / 10.0))
+    if clear < max(min(_MIN_CLEAR_FRAMES, span), _MIN_PRESENCE * span):
+        return False
+    return bool((track.power >= mean_square_pa2(settings.threshold_db)).any())
 
 
 def _is_shaft_order(track: _Track, spec: Spectrogram, speed: SpeedCourse | None) -> bool:
