@@ -7,9 +7,7 @@ Not its job: building a rig (`rigctl.hal.rig`).
 
 from __future__ import annotations
 
-import difflib
 import importlib
-from importlib.metadata import entry_points
 from typing import Any
 
 from rigctl.core.errors import ConfigError, DeviceError
@@ -49,6 +47,8 @@ class Registry:
         for point in self._entry_points():
             if point.name == f"{role}.{kind}":
                 return point.value
+        import difflib
+
         known = self.kinds(role)
         near = difflib.get_close_matches(kind, known, n=1)
         hint = f"Did you mean {near[0]!r}?" if near else f"Known kinds: {', '.join(known) or 'none'}."
@@ -68,6 +68,8 @@ class Registry:
 
     @staticmethod
     def _entry_points() -> list[Any]:
+        from importlib.metadata import entry_points  # 55 ms; the watchdog loads its one class without it
+
         return list(entry_points(group=ENTRY_POINT_GROUP))
 
 

@@ -54,6 +54,11 @@ class SafetyLink(Protocol):
         """Open the channel; raises `DeviceError` when nobody answers."""
         ...
 
+    def fileno(self) -> int:
+        """Descriptor for poll: readable when a sample is there or the channel is gone. Nothing is held back
+        in a buffer: while it is not readable, `recv` has nothing."""
+        ...
+
     def recv(self, timeout_s: float) -> SafetySample | None:
         """Next sample, None after `timeout_s`; raises `LinkClosed` when the channel is gone."""
         ...
