@@ -136,7 +136,7 @@ def _pairs(values: NDArray[np.complex128]) -> tuple[EigenPair, ...]:
     pairs = [
         EigenPair(
             frequency_hz=float(value.imag) / (2.0 * math.pi) if value.imag > _REAL * abs(value) else 0.0,
-            damping_ratio=-float(value.real) / abs(value) if value != 0.0 else 0.0,
+            damping_ratio=-float(value.real / abs(value)) if value != 0.0 else 0.0,
             real_part_1_s=float(value.real),
         )
         for value in kept

@@ -1,0 +1,282 @@
+"""The squealing brake in the time domain: what the plant calls block by block.
+
+`SquealIntegrator` integrates the deviation of the brake from its steadily sliding state under the working point given
+by the caller (pad force, friction law, sliding speed) and returns accelerations or other outputs at the output rate.
+The linear brake is propagated exactly (`modal`), friction is evaluated at the pads only (`kernels`).
+
+Modelled: friction mu(v) (N0 + N~) with the varying normal force N~, reversal of slip and sticking, loss of friction when
+a pad's normal force falls to zero. Not modelled: the normal contact springs stay linear when a pad lifts off.
+NOT its job: where the working point comes from, sound, torque, noise generation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim_hardware.brake_model import kernels
+from sim_hardware.brake_model.assembly import Array, Brake
+from sim_hardware.brake_model.modal import (
+    MODE_BLOCK,
+    Complex,
+    ModalSystem,
+    hold_weights,
+    modal_system,
+    multistep_form,
+)
+from sim_hardware.brake_model.outputs import output_rows
+
+if TYPE_CHECKING:
+    from sim_hardware.brake_model.spec import BrakeSpec
+
+#: rate of the fine steps around slip reversals
+_FINE_HZ = 320_000.0
+#: a mode that decays by more than this in one step cannot be carried in the s form
+_FASTEST_DECAY = 1e-3
+#: modes below this size are set to zero between calls, so that a brake at rest does not compute with subnormal numbers
+_NEGLIGIBLE = 1e-200
+
+
+class SquealIntegrator:
+    """Time integration of one brake. Keeps its state between calls; deterministic.
+
+    Parameters
+    ----------
+    brake : the brake
+    mu_ref : friction of the linear part; any value gives the same motion, one near the actual mu gives it most exactly
+    output_hz : rate of outputs and excitation
+    substeps : internal steps per output interval
+    outputs : names of the outputs, see `outputs`; default: acceleration of every degree of freedom
+    fine_steps : first-order-hold steps per internal step around slip reversals; default reaches 320 kHz
+
+    Attributes
+    ----------
+    n_pads : number of friction groups (one per rigid pad), columns of `excitation_n`
+    pads : their names
+    outputs : names of the outputs, columns of the result
+
+    Raises
+    ------
+    KeyError
+        unknown output
+    ValueError
+        rates not positive, no complete set of modes, internal rate too low for the brake
+    """
+
+    def __init__(
+        self,
+        brake: Brake,
+        *,
+        mu_ref: float | None = None,
+        output_hz: float = 40_000.0,
+        substeps: int = 2,
+        outputs: Sequence[str] | None = None,
+        fine_steps: int | None = None,
+    ) -> None:
+        if not (math.isfinite(output_hz) and output_hz > 0.0):
+            raise ValueError(f"output_hz is {output_hz!r}; give a positive rate")
+        if substeps < 1:
+            raise ValueError(f"substeps is {substeps!r}; give at least 1")
+        self.brake = brake
+        self.output_hz = output_hz
+        self.substeps = substeps
+        self.outputs = brake.freedoms if outputs is None else tuple(outputs)
+        fine = max(1, math.ceil(_FINE_HZ / (output_hz * substeps))) if fine_steps is None else fine_steps
+        if fine < 1:
+            raise ValueError(f"fine_steps is {fine!r}; give at least 1")
+        self._system = modal_system(brake, brake.mu if mu_ref is None else mu_ref)
+        self._coefficients = _coefficients(brake, self._system, self.outputs, 1.0 / (output_hz * substeps), substeps, fine)
+        self.pads = tuple(group.pad for group in self._system.groups)
+        self.n_pads = len(self.pads)
+        padded = self._coefficients.rotation.shape[1]
+        self._memory = kernels.Memory(
+            np.zeros((2, padded)), np.zeros((kernels.DEPTH, self.n_pads)), np.zeros(self.n_pads), np.zeros(2)
+        )
+        pair = self.n_pads == 2 and padded == MODE_BLOCK  # noqa: PLR2004
+        self._advance = kernels.advance_pair if pair else kernels.advance_general
+        self.reset()
+
+    def reset(self) -> None:
+        """Go to the steadily sliding state, without memory."""
+        for array in self._memory:
+            array[...] = 0.0
+        self._memory.flags[0] = kernels.ORDER  # zero is an exact history of that state
+
+    def advance(
+        self,
+        n_out: int,
+        *,
+        normal_force_n: tuple[float, float],
+        mu: tuple[float, float],
+        slip_m_s: tuple[float, float],
+        k_s_m: tuple[float, float] = (0.0, 0.0),
+        saturation_m_s: float | None = None,
+        excitation_n: Array | None = None,
+    ) -> Array:
+        """Integrate `n_out` output intervals and return the outputs at the start of each.
+
+        Parameters
+        ----------
+        n_out : number of output intervals
+        normal_force_n : (start, end) mean normal force of one pad, p A; here and below linear within the call
+        mu : (start, end) coefficient of friction at the mean sliding speed
+        slip_m_s : (start, end) mean sliding speed, >= 0. At 0 the pads stick: slow; better do not integrate then
+        k_s_m : (start, end) falling slope of the friction law at the mean sliding speed
+        saturation_m_s : size v_s of speed variation at which the slope fades (`friction`); None: linear law (eq 28)
+        excitation_n : (n_out, n_pads) N, friction force from surface roughness, held over each output interval
+
+        Returns
+        -------
+        (n_out, n_outputs) float64
+
+        Raises
+        ------
+        ValueError
+            wrong shape, negative pad force or sliding speed, values that are not finite
+        FloatingPointError
+            the motion grew out of all bounds (a brake unstable in its linear part)
+        """
+        operation = np.array([normal_force_n, mu, slip_m_s, k_s_m], dtype=float)
+        excitation = self._checked_excitation(n_out, excitation_n)
+        inverse_saturation = 0.0
+        if saturation_m_s is not None:
+            if not saturation_m_s > 0.0:
+                raise ValueError(f"saturation_m_s is {saturation_m_s!r}; give a positive speed or None")
+            inverse_saturation = 1.0 / saturation_m_s
+        if not np.isfinite(operation).all() or (operation[[0, 2]] < 0.0).any():
+            raise ValueError(
+                f"working point (pad force, mu, slip, k) {operation.tolist()}: give finite values, pad force and slip >= 0"
+            )
+        out = np.zeros((n_out, len(self.outputs)))
+        if n_out:
+            self._advance(self._coefficients, self._memory, operation, inverse_saturation, excitation, out)
+            if not np.isfinite(self._memory.modes).all():
+                raise FloatingPointError(
+                    f"the motion of brake '{self.brake.name}' is not finite; check its stability at mu = {mu}, "
+                    f"pad force {normal_force_n} N, k = {k_s_m} s/m, or give saturation_m_s"
+                )
+            if np.abs(self._memory.modes).max() < _NEGLIGIBLE and np.abs(self._memory.history).max() < _NEGLIGIBLE:
+                self.reset()
+        return out
+
+    def _checked_excitation(self, n_out: int, excitation_n: Array | None) -> Array:
+        if n_out < 0:
+            raise ValueError(f"n_out is {n_out!r}; give 0 or more")
+        if excitation_n is None:
+            return np.zeros((0, self.n_pads))
+        excitation = np.ascontiguousarray(excitation_n, dtype=float)
+        if excitation.shape != (n_out, self.n_pads):
+            raise ValueError(f"excitation_n has the shape {excitation.shape}; give ({n_out}, {self.n_pads})")
+        return excitation
+
+    # -- state -----------------------------------------------------------------------------------------------------
+
+    def memory(self) -> dict[str, Array]:
+        """Return a copy of everything that changes; `restore` continues from it bit for bit."""
+        return {name: array.copy() for name, array in self._memory._asdict().items()}
+
+    def restore(self, memory: dict[str, Array]) -> None:
+        """Continue from a copy made by `memory` of an integrator with the same settings."""
+        for name, array in self._memory._asdict().items():
+            array[...] = memory[name]
+
+    @property
+    def state(self) -> Array:
+        """(2 n_dof,) displacements and velocities from the steadily sliding state (m, rad, m/s, rad/s)."""
+        eta = self._memory.modes[0] + 1j * self._memory.modes[1]
+        c = self._coefficients
+        past = self._memory.history.ravel()
+        eta = eta + past @ (c.history_r + 1j * c.history_i)
+        return (self._system.vectors @ eta[: len(self._system.eigenvalues)]).real
+
+    @state.setter
+    def state(self, value: Array) -> None:
+        """Start from displacements and velocities; the friction history is rebuilt by careful steps."""
+        state = np.asarray(value, dtype=float)
+        if state.shape != (2 * self.brake.n_dof,) or not np.isfinite(state).all():
+            raise ValueError(f"state of shape {state.shape}: give {2 * self.brake.n_dof} finite values")
+        for array in self._memory:
+            array[...] = 0.0
+        eta = self._system.inverse @ state
+        self._memory.modes[0, : len(eta)], self._memory.modes[1, : len(eta)] = eta.real, eta.imag
+
+
+def compile_kernels(spec: BrakeSpec | None = None) -> None:
+    """Compile (or load from numba's cache) the kernels, so that a process does it before anything moves.
+
+    `spec`: the brake whose kernel is needed; None: the kernel for two pads and up to 16 modes.
+    """
+    if spec is not None:
+        integrator = SquealIntegrator(Brake(spec), outputs=())
+        integrator.advance(1, normal_force_n=(1.0, 1.0), mu=(0.4, 0.4), slip_m_s=(1.0, 1.0))
+        return
+    shape, depth = MODE_BLOCK, kernels.DEPTH
+    pair, four = np.zeros((2, shape)), np.zeros((4, shape))
+    c = kernels.Coefficients(
+        1, 1, 0.4, np.ones(2), pair, pair, pair, pair, pair, np.zeros((2 * depth, shape)), np.zeros((2 * depth, shape)),
+        four, four, four, four, np.zeros((4, depth, 2)), np.zeros((4, depth, 2)), np.zeros((4, 2)),
+        pair, pair, pair, pair, pair, np.eye(4, 2), pair, pair, np.zeros((2, depth, 2)), np.zeros((2, 2)),
+    )  # fmt: skip
+    m = kernels.Memory(np.zeros((2, shape)), np.zeros((depth, 2)), np.zeros(2), np.full(2, float(kernels.ORDER)))
+    kernels.advance_pair(c, m, np.ones((4, 2)), 0.0, np.zeros((0, 2)), np.zeros((1, 2)))
+
+
+def _coefficients(
+    brake: Brake, system: ModalSystem, outputs: tuple[str, ...], step_s: float, substeps: int, fine_steps: int
+) -> kernels.Coefficients:
+    form = multistep_form(system, step_s, kernels.ORDER)
+    if np.abs(form.rotation).min() < _FASTEST_DECAY:
+        raise ValueError(
+            f"brake '{brake.name}': a mode decays within one internal step of {step_s:.2e} s; raise substeps or lower "
+            "the damping of the coupling that causes it"
+        )
+    fine_s = step_s / fine_steps
+    fine = hold_weights(system.eigenvalues, fine_s, np.array([0.0, 1.0]))[:, :, None] * system.inputs
+    contact = system.contact_rows @ system.vectors
+    state_rows, direct = output_rows(brake, system, outputs)
+    output = state_rows @ system.vectors
+    padded = max(1, -(-len(system.eigenvalues) // MODE_BLOCK)) * MODE_BLOCK
+    history = form.history.transpose(0, 2, 1).reshape(-1, len(system.eigenvalues))  # (DEPTH * G, m)
+
+    def columns(values: Complex) -> tuple[Array, Array]:
+        """(rows, m) inputs to the modes, padded."""
+        wide = np.zeros((values.shape[0], padded), dtype=complex)
+        wide[:, : values.shape[1]] = values
+        return np.ascontiguousarray(wide.real), np.ascontiguousarray(wide.imag)
+
+    def rows(values: Complex) -> tuple[Array, Array]:
+        """(rows, m) products with the modes, of which the real part is wanted, padded."""
+        real, imaginary = columns(values)
+        return real, -imaginary
+
+    def past(values: Complex) -> Array:
+        """Effect of the history terms of the s form on products with the modes: (rows, DEPTH, G)."""
+        return np.ascontiguousarray(np.einsum("rm,dmg->rdg", values, form.history).real)
+
+    ahead_history = past(contact)
+    ahead_history[:, 0, :] += (contact @ form.drive).real
+    return kernels.Coefficients(
+        substeps,
+        fine_steps,
+        system.mu_ref,
+        np.array([group.load_share for group in system.groups]),
+        np.vstack(columns(form.rotation[None, :])),
+        *columns(form.drive.T),
+        *columns(form.hold.T),
+        *columns(history),
+        *rows(contact),
+        *rows(contact * form.rotation),
+        past(contact),
+        ahead_history,
+        np.ascontiguousarray((contact @ form.hold).real),
+        np.vstack(columns(np.exp(system.eigenvalues * fine_s)[None, :])),
+        *columns(fine[0].T),
+        *columns(fine[1].T),
+        np.ascontiguousarray((contact @ fine[1]).real),
+        *rows(output),
+        past(output),
+        np.ascontiguousarray(direct),
+    )
