@@ -12,16 +12,15 @@ from sequences.braking import (
     TemperatureLimits,
 )
 from sequences.matrix import Sequence, brakings
-from sequences.profiles import (
+from sequences.pressure import (
     ConstantPressure,
     PressureFunction,
     RampPressure,
     SinePressure,
-    SpeedProfile,
-    SpeedSegment,
     StepsPressure,
     TrianglePressure,
 )
+from sequences.profiles import SpeedProfile, SpeedSegment
 from sequences.program import Program, dump_program, load_program
 
 __all__ = [

@@ -27,7 +27,8 @@ from sequences.fields import (
     ToleranceK,
     refuse,
 )
-from sequences.profiles import PressureFunction, SpeedProfile
+from sequences.pressure import PressureFunction
+from sequences.profiles import SpeedProfile
 
 Role = Literal["bedding", "matrix", "friction", "stop", "calibration", "check"]
 Axis = Literal["temperature", "speed", "pressure"]

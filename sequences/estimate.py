@@ -195,7 +195,7 @@ def loop_order_durations(
     durations: dict[LoopOrder, DurationEstimate] = {}
     same: dict[tuple[Axis, ...], DurationEstimate] = {}  # loops of one value do not change the order
     for order in itertools.permutations(AXES, 3):
-        effective = tuple(axis for axis in order if chosen.sizes[axis] > 1)
+        effective: tuple[Axis, ...] = tuple(axis for axis in order if chosen.sizes[axis] > 1)
         if effective not in same:
             sequences = (*before, chosen.model_copy(update={"loop_order": order}), *after)
             variant = program.model_copy(update={"sequences": sequences})

@@ -25,7 +25,8 @@ from sequences.braking import (
     TemperatureLimits,
 )
 from sequences.fields import Data, PauseS, PressureBar, SafeName, TemperatureDegc, refuse
-from sequences.profiles import ConstantPressure, PressureFunction, SpeedProfile
+from sequences.pressure import ConstantPressure, PressureFunction
+from sequences.profiles import SpeedProfile
 from sequences.ranges import MAX_VALUES, expand_range
 from sequences.sense import require_sense
 
