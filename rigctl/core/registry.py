@@ -47,7 +47,7 @@ class Registry:
         for point in self._entry_points():
             if point.name == f"{role}.{kind}":
                 return point.value
-        import difflib  # noqa: PLC0415 - only an error needs it
+        import difflib
 
         known = self.kinds(role)
         near = difflib.get_close_matches(kind, known, n=1)
@@ -68,7 +68,7 @@ class Registry:
 
     @staticmethod
     def _entry_points() -> list[Any]:
-        from importlib.metadata import entry_points  # noqa: PLC0415 - 55 ms the watchdog need not pay
+        from importlib.metadata import entry_points
 
         return list(entry_points(group=ENTRY_POINT_GROUP))
 
