@@ -34,12 +34,14 @@ Role = Literal["bedding", "matrix", "friction", "stop", "calibration", "check"]
 Axis = Literal["temperature", "speed", "pressure"]
 AXES: tuple[Axis, Axis, Axis] = ("temperature", "speed", "pressure")
 
-Counting = Annotated[int, Bounds(1, 10**9, "", "give a whole number of 1 or more")]
-Position = Annotated[int, Bounds(0, 10**9, "", "give a whole number of 0 or more")]
+Counting = Annotated[int, Bounds(1, 100_000, "", "give a whole number of 1 or more")]
+Position = Annotated[int, Bounds(0, 100_000, "", "give a whole number of 0 or more")]
 Decimation = Annotated[int, Bounds(1, 1_000_000, "", "give a whole number of 1 or more, e.g. 40")]
 SamplingHz = Annotated[
     float, Bounds(0, 10_000_000, "Hz", "give the sampling rate in Hz, e.g. 40000", above_low=True)
 ]
+
+LeadS = Annotated[float, Bounds(0, 60, "s", "give a time in seconds from 0 to 60, e.g. 0.5")]
 
 
 class Conditioning(Data):
@@ -110,8 +112,8 @@ class Recording(Data):
 
     sampling_hz: SamplingHz = 40000.0
     channels: tuple[RecordedChannel, ...]
-    pre_s: PauseS = 0.5
-    post_s: PauseS = 0.5
+    pre_s: LeadS = 0.5
+    post_s: LeadS = 0.5
 
     @model_validator(mode="after")
     def _distinct(self) -> Self:

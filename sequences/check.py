@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 from sequences.braking import Braking
 from sequences.capabilities import RigCapabilities
 from sequences.estimate import BrakingForecast, DurationEstimate, ThermalWalk
-from sequences.fields import Data
+from sequences.fields import Data, sentence
 from sequences.limits import (
     Finding,
     pressure_findings,
@@ -102,7 +102,7 @@ class _Collector:
                 place=f"sequences[{positions[key.sequence]}] '{key.sequence}': {key.key}",
                 value=_text(list(group.values), group.finding.unit),
                 problem=group.finding.problem,
-                remedy=group.finding.remedy,
+                remedy=sentence(group.finding.remedy),
                 first_index=group.first_index,
                 count=group.count,
             )

@@ -31,9 +31,15 @@ class Data(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
+def sentence(text: str) -> str:
+    """`text` with a capital letter and a full stop."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+
+
 def refuse(kind: str, text: str, remedy: str, value: Any = None, **context: Any) -> PydanticCustomError:
     """Return the error to raise: `text` may use ``{value}`` and the names in `context`."""
-    return PydanticCustomError(kind, text, {"value": value, "remedy": remedy, **context})  # type: ignore[arg-type]
+    fields = {"value": value, "remedy": sentence(remedy), **context}
+    return PydanticCustomError(kind, text, fields)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -50,12 +56,12 @@ class Bounds:
     above_low: bool = False  # True: `low` itself is refused
 
     def _check(self, value: float) -> float:
-        if not math.isfinite(value):
+        if isinstance(value, float) and not math.isfinite(value):
             raise refuse("not_finite", "{value} is not a number that can be set", self.remedy, str(value))
         if value < self.low or value > self.high or (self.above_low and value == self.low):
-            floor = "above" if self.above_low else "from"
-            span = f"{floor} {self.low:g} to {self.high:g} {self.unit}".rstrip()
-            raise refuse("out_of_bounds", "{value} is not {span}", self.remedy, value, span=span)
+            floor = f"above {self.low:.12g} and up" if self.above_low else f"from {self.low:.12g}"
+            span = f"{floor} to {self.high:.12g} {self.unit}".rstrip()
+            raise refuse("out_of_bounds", "{value} is not {span}", self.remedy, repr(value)[:40], span=span)
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

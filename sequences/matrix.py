@@ -9,9 +9,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal, Self, cast
+from typing import Annotated, Any, Literal, Self, TypeVar, cast
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from sequences.braking import (
     AXES,
@@ -31,6 +31,7 @@ from sequences.ranges import MAX_VALUES, expand_range
 from sequences.sense import require_sense
 
 Table = Mapping[str, Any]
+Values = TypeVar("Values", bound=tuple[Any, ...])
 
 
 def _numbers(value: Any) -> Any:
@@ -53,10 +54,30 @@ def _profiles(value: Any) -> Any:
     return [{"duration_s": duration_s, "start_rpm": n, "end_rpm": n} for n in speeds]
 
 
+def _not_empty(values: Values) -> Values:
+    if not values:
+        raise refuse("empty_list", "zero brakings: the list is empty", "give at least one value")
+    return values
+
+
+def _each_loop_once(order: tuple[Axis, Axis, Axis]) -> tuple[Axis, Axis, Axis]:
+    if sorted(order) != sorted(AXES):
+        raise refuse(
+            "loop_order",
+            "{value} does not name each loop once",
+            "write temperature, speed and pressure in the wanted order, outermost first",
+            ", ".join(order),
+        )
+    return order
+
+
 _Length = Field(max_length=MAX_VALUES)
 Temperatures = Annotated[tuple[TemperatureDegc, ...], BeforeValidator(_numbers), _Length]
-Profiles = Annotated[tuple[SpeedProfile, ...], BeforeValidator(_profiles), _Length]
-Pressures = Annotated[tuple[PressureBar, ...], BeforeValidator(_numbers), _Length]
+Profiles = Annotated[
+    tuple[SpeedProfile, ...], BeforeValidator(_profiles), _Length, AfterValidator(_not_empty)
+]
+Pressures = Annotated[tuple[PressureBar, ...], BeforeValidator(_numbers), _Length, AfterValidator(_not_empty)]
+LoopOrder = Annotated[tuple[Axis, Axis, Axis], AfterValidator(_each_loop_once)]
 
 
 class Sequence(Data):
@@ -74,7 +95,7 @@ class Sequence(Data):
     temperatures_degc: Temperatures = ()
     speed_profiles: Profiles
     pressures_bar: Pressures
-    loop_order: tuple[Axis, Axis, Axis] = AXES
+    loop_order: LoopOrder = AXES
     processing: Literal["loops", "lists"] = "loops"
     pressure_function: PressureFunction = ConstantPressure()
     conditioning: Conditioning = Conditioning()

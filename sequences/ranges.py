@@ -14,6 +14,7 @@ from typing import Any
 from sequences.fields import refuse
 
 MAX_VALUES = 1000
+_LARGEST = 1e12  # beyond every bound of a list's values; also refuses nan, inf and endless integers
 _SHAPE = "write { from = 2, to = 30, step = 2 } or { from = 2, to = 30, count = 15 }"
 
 
@@ -49,11 +50,11 @@ def expand_range(table: Mapping[str, Any]) -> list[float]:
 
 def _number(table: Mapping[str, Any], key: str) -> float:
     value = table[key]
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise refuse(
-            "range_number", "range: {key} = {value} is not a finite number", _SHAPE, repr(value), key=key
-        )
-    return float(value)
+    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) <= _LARGEST:
+        return float(value)
+    raise refuse(
+        "range_number", "range: {key} = {value} is not a number to use", _SHAPE, repr(value)[:40], key=key
+    )
 
 
 def _intervals_from_count(table: Mapping[str, Any], start: float, stop: float) -> int:
@@ -63,7 +64,7 @@ def _intervals_from_count(table: Mapping[str, Any], start: float, stop: float) -
             "range_count",
             "range: count = {value} is not a whole number from 1 to {most}",
             _SHAPE,
-            repr(count),
+            repr(count)[:40],
             most=MAX_VALUES,
         )
     if (count == 1) != (start == stop):

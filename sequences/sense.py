@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
 
-from sequences.braking import AXES
 from sequences.fields import refuse
 
 if TYPE_CHECKING:
@@ -21,47 +20,29 @@ MAX_BRAKINGS = 100_000
 
 def require_sense(sequence: Sequence) -> None:
     """Raise the first rule that `sequence` breaks, as ``PydanticCustomError``."""
-    for rule in (
-        _empty_list, _temperature_use, _order, _lengths, _too_many, _too_hot, _negative_pressure, _rise,
-    ):  # fmt: skip
+    for rule in (_temperature_use, _lengths, _too_many, _too_hot, _negative_pressure, _rise):
         problem = rule(sequence)
         if problem is not None:
             raise problem
 
 
-def _empty_list(sequence: Sequence) -> PydanticCustomError | None:
-    lists = {"speed_profiles": sequence.speed_profiles, "pressures_bar": sequence.pressures_bar}
-    if sequence.conditioning.enabled:
-        lists = {"temperatures_degc": sequence.temperatures_degc, **lists}
-    empty = [key for key, values in lists.items() if not values]
-    if not empty:
-        return None
-    remedy = f"give at least one value in {empty[0]}"
-    if empty[0] == "temperatures_degc":
-        remedy += ", or set conditioning.enabled = false to brake at whatever temperature the disc has"
-    return refuse("empty_list", "zero brakings: {value} is empty", remedy, empty[0])
-
-
 def _temperature_use(sequence: Sequence) -> PydanticCustomError | None:
-    if sequence.conditioning.enabled or not sequence.temperatures_degc:
-        return None
-    return refuse(
-        "temperatures_unused",
-        "temperatures_degc has {value} entries, but conditioning is off",
-        "set conditioning.enabled = true, or remove temperatures_degc",
-        len(sequence.temperatures_degc),
-    )
-
-
-def _order(sequence: Sequence) -> PydanticCustomError | None:
-    if sorted(sequence.loop_order) == sorted(AXES):
-        return None
-    return refuse(
-        "loop_order",
-        "loop_order {value} does not name each loop once",
-        "write temperature, speed and pressure in the wanted order, outermost first",
-        str(list(sequence.loop_order)),
-    )
+    if sequence.conditioning.enabled and not sequence.temperatures_degc:
+        return refuse(
+            "empty_list",
+            "zero brakings: {value} is empty",
+            "give at least one temperature, or set conditioning.enabled = false to brake at whatever"
+            " temperature the disc has",
+            "temperatures_degc",
+        )
+    if not sequence.conditioning.enabled and sequence.temperatures_degc:
+        return refuse(
+            "temperatures_unused",
+            "temperatures_degc has {value} entries, but conditioning is off",
+            "set conditioning.enabled = true, or remove temperatures_degc",
+            len(sequence.temperatures_degc),
+        )
+    return None
 
 
 def _lengths(sequence: Sequence) -> PydanticCustomError | None:
