@@ -1,7 +1,7 @@
 """Compiled recursion of the squealing brake: exact linear propagation, friction evaluated at the pads only.
 
-Main step: exponential Adams-Bashforth in the s form (`modal`). The slip variation of the next step is known before the
-modes are updated, so the friction law's latency overlaps with the modal products. Whenever a pad's slip would reverse,
+Main step: exponential Adams-Moulton in the s form (`modal`). The contact motion of the next step is predicted before
+the modes are updated, so the friction law's latency overlaps with the modal products. Whenever a pad's slip would reverse,
 and until enough smooth values exist again, careful steps are taken: fine first-order-hold steps in which the set-valued
 friction law (sliding forwards, backwards, sticking) is solved in closed form per pad, with Gauss-Seidel sweeps between
 the pads.
@@ -22,10 +22,11 @@ from sim_hardware.brake_model import simd
 
 Array = NDArray[np.float64]
 
-#: order of the main step
-ORDER = 4
-#: values of g kept from earlier steps
-DEPTH = ORDER - 1
+#: values of g kept from earlier steps, and with the present one
+PAST = 3
+DEPTH = PAST + 1
+#: smooth steps in a row before the main step may follow careful ones: as many as its polynomial needs
+CALM = DEPTH
 #: Gauss-Seidel sweeps over the pads, and fixed-point steps for mu(v) within each
 _SWEEPS = 3
 _INNER = 2
@@ -48,14 +49,13 @@ class Coefficients(NamedTuple):
     drive_i: Array
     hold_r: Array  # (G, P) excitation held over the step
     hold_i: Array
-    history_r: Array  # (DEPTH * G, P)
+    history_r: Array  # (DEPTH * G, P) from g[n], g[n-1], ...
     history_i: Array
-    contact_r: Array  # (2 G, P) slip and compression variation from the modes
+    contact_r: Array  # (2 G, P) slip and compression variation from the modes (fine steps)
     contact_i: Array
-    ahead_r: Array  # (2 G, P) the same one step ahead
+    ahead_r: Array  # (2 G, P) the same one main step ahead
     ahead_i: Array
-    contact_history: Array  # (2 G, DEPTH, G)
-    ahead_history: Array  # (2 G, DEPTH, G) one step ahead from g[n], g[n-1], g[n-2]
+    ahead_history: Array  # (2 G, DEPTH, G) one step ahead from g[n], g[n-1], ...
     ahead_hold: Array  # (2 G, G)
     fine_rotation: Array  # (2, P)
     fine_start_r: Array  # (G, P)
@@ -70,12 +70,24 @@ class Coefficients(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """Everything that changes: modes in the s form, earlier and present g, [calm steps, present g is known]."""
+    """Everything that changes.
 
-    modes: Array  # (2, P)
-    history: Array  # (DEPTH, G)
-    present: Array  # (G,)
+    `flags`: number of smooth steps in a row; how `present` and `modes` are to be taken (next three constants).
+    """
+
+    modes: Array  # (2, P) in the s form
+    history: Array  # (PAST, G) earlier g, latest first
+    present: Array  # (G,) g now
+    contact: Array  # (2 G,) slip and compression variation now
     flags: Array  # (2,)
+
+
+#: g follows from the friction law at `contact`
+FROM_LAW = 0.0
+#: g is in `present`: the solution of a careful step, which may be sticking
+SOLVED = 1.0
+#: the modes were set from outside and do not contain any g yet
+FRESH = 2.0
 
 
 @njit(inline="always", **_OPTIONS)
@@ -104,25 +116,39 @@ def _deviation(
 
 
 @njit(**_OPTIONS)
+def _add_history(c: Coefficients, m: Memory, sign: float, zr: Array, zi: Array) -> None:
+    """Add or take away the friction history: between the s form and the modes themselves."""
+    groups, modes = c.drive_r.shape
+    for d in range(DEPTH):
+        for p in range(groups):
+            g = sign * (m.present[p] if d == 0 else m.history[d - 1, p])
+            for j in range(modes):
+                zr[j] += c.history_r[d * groups + p, j] * g
+                zi[j] += c.history_i[d * groups + p, j] * g
+
+
+@njit(**_OPTIONS)
+def _shift(m: Memory) -> None:
+    """Make the present g the latest of the past."""
+    for d in range(PAST - 1, 0, -1):
+        m.history[d] = m.history[d - 1]
+    m.history[0] = m.present
+
+
+@njit(**_OPTIONS)
 def _careful_step(
-    c: Coefficients, m: Memory, excitation: Array, start: Array, end: Array, inverse_saturation: float, contact: Array
+    c: Coefficients, m: Memory, excitation: Array, start: Array, end: Array, inverse_saturation: float
 ) -> None:
     """Advance by one main step in fine steps with set-valued friction.
 
-    `start`, `end`: (4,) pad force, mu_mean, mean slip, k at both ends. `contact`: (2 G,) slip and compression variation,
-    updated. The present g must be in `m.present`; afterwards it is that of the new time.
+    `start`, `end`: (4,) pad force, mu_mean, mean slip, k at both ends. The present g must be in `m.present`; afterwards it
+    and `m.contact` are those of the new time.
     """
     groups, modes = c.drive_r.shape
     zr, zi = m.modes[0].copy(), m.modes[1].copy()
-    for d in range(DEPTH):
-        for p in range(groups):
-            for j in range(modes):
-                zr[j] += c.history_r[d * groups + p, j] * m.history[d, p]
-                zi[j] += c.history_i[d * groups + p, j] * m.history[d, p]
-    for d in range(DEPTH - 1, 0, -1):
-        m.history[d] = m.history[d - 1]
-    m.history[0] = m.present
-    g = m.present
+    g, contact = m.present, m.contact
+    _add_history(c, m, 1.0, zr, zi)
+    _shift(m)
     for fine in range(c.fine_steps):
         part = (fine + 1.0) / c.fine_steps
         n0 = start[0] + part * (end[0] - start[0])
@@ -146,11 +172,7 @@ def _careful_step(
             for j in range(modes):
                 zr[j] += c.fine_end_r[p, j] * g[p]
                 zi[j] += c.fine_end_i[p, j] * g[p]
-    for d in range(DEPTH):
-        for p in range(groups):
-            for j in range(modes):
-                zr[j] -= c.history_r[d * groups + p, j] * m.history[d, p]
-                zi[j] -= c.history_i[d * groups + p, j] * m.history[d, p]
+    _add_history(c, m, -1.0, zr, zi)
     m.modes[0] = zr
     m.modes[1] = zi
 
@@ -200,20 +222,6 @@ def _solve_friction(
 
 
 @njit(**_OPTIONS)
-def _contact_now(c: Coefficients, m: Memory, contact: Array) -> None:
-    """Slip and compression variation of all groups at the present time, into `contact`."""
-    groups, modes = c.drive_r.shape
-    for row in range(2 * groups):
-        value = 0.0
-        for j in range(modes):
-            value += c.contact_r[row, j] * m.modes[0, j] + c.contact_i[row, j] * m.modes[1, j]
-        for d in range(DEPTH):
-            for q in range(groups):
-                value += c.contact_history[row, d, q] * m.history[d, q]
-        contact[row] = value
-
-
-@njit(**_OPTIONS)
 def _outputs_now(c: Coefficients, m: Memory, excitation: Array, out: Array) -> None:
     """All outputs at the present time, into `out` (O,)."""
     groups, modes = c.drive_r.shape
@@ -222,9 +230,9 @@ def _outputs_now(c: Coefficients, m: Memory, excitation: Array, out: Array) -> N
         for j in range(modes):
             value += c.output_r[o, j] * m.modes[0, j] + c.output_i[o, j] * m.modes[1, j]
         for q in range(groups):
-            value += c.output_direct[o, q] * (m.present[q] + excitation[q])
-            for d in range(DEPTH):
-                value += c.output_history[o, d, q] * m.history[d, q]
+            value += c.output_direct[o, q] * (m.present[q] + excitation[q]) + c.output_history[o, 0, q] * m.present[q]
+            for d in range(1, DEPTH):
+                value += c.output_history[o, d, q] * m.history[d - 1, q]
         out[o] = value
 
 
@@ -236,28 +244,39 @@ def _point(operation: Array, part: float, into: Array) -> None:
 
 
 @njit(**_OPTIONS)
-def _present_g(c: Coefficients, m: Memory, contact: Array, op: Array, inverse_saturation: float) -> None:
-    """Evaluate the friction law at the present time unless the last careful step left its solution."""
-    if m.flags[1] == 0.0:
-        for p in range(len(m.present)):
-            m.present[p] = _deviation(
-                contact[2 * p], contact[2 * p + 1], c.share[p] * op[0], op[1], op[2], op[3], inverse_saturation, c.mu_ref
-            )
+def _present_g(c: Coefficients, m: Memory, op: Array, inverse_saturation: float) -> None:
+    """Bring g into `m.present`: by the friction law, unless the last careful step left its solution there."""
+    if m.flags[1] == SOLVED:
+        return
+    for p in range(len(m.present)):
+        m.present[p] = _deviation(
+            m.contact[2 * p],
+            m.contact[2 * p + 1],
+            c.share[p] * op[0],
+            op[1],
+            op[2],
+            op[3],
+            inverse_saturation,
+            c.mu_ref,
+        )
+    if m.flags[1] == FRESH:
+        _add_history(c, m, -1.0, m.modes[0], m.modes[1])
+        m.flags[1] = SOLVED
 
 
 @njit(**_OPTIONS)
 def _careful_and_count(
-    c: Coefficients, m: Memory, excitation: Array, start: Array, end: Array, inverse_saturation: float, contact: Array
+    c: Coefficients, m: Memory, excitation: Array, start: Array, end: Array, inverse_saturation: float
 ) -> None:
-    """Take a careful step and count how many steps in a row slid forwards throughout."""
+    """Take a careful step and count how many steps in a row slid forwards at both ends."""
     forwards = True
     for p in range(len(m.present)):
-        forwards = forwards and start[2] - contact[2 * p] > 0.0
-    _careful_step(c, m, excitation, start, end, inverse_saturation, contact)
+        forwards = forwards and start[2] - m.contact[2 * p] > 0.0
+    _careful_step(c, m, excitation, start, end, inverse_saturation)
     for p in range(len(m.present)):
-        forwards = forwards and end[2] - contact[2 * p] > 0.0
+        forwards = forwards and end[2] - m.contact[2 * p] > 0.0
     m.flags[0] = m.flags[0] + 1.0 if forwards else 0.0
-    m.flags[1] = 1.0
+    m.flags[1] = SOLVED
 
 
 @njit(**_OPTIONS)
@@ -267,18 +286,17 @@ def advance_general(
     """Advance by len(out) output intervals; see `advance_pair`."""
     groups, modes = c.drive_r.shape
     steps = len(out) * c.substeps
-    contact, ahead = np.zeros(2 * groups), np.zeros(2 * groups)
+    ahead = np.zeros(2 * groups)
     start, end = np.zeros(4), np.zeros(4)
     still = np.zeros(groups)
-    _contact_now(c, m, contact)
     for n in range(steps):
         push = excitation[n // c.substeps] if len(excitation) else still
         _point(operation, n / steps, start)
         _point(operation, (n + 1) / steps, end)
-        _present_g(c, m, contact, start, inverse_saturation)
+        _present_g(c, m, start, inverse_saturation)
         if n % c.substeps == 0:
             _outputs_now(c, m, push, out[n // c.substeps])
-        forwards = m.flags[0] >= ORDER
+        forwards = m.flags[0] >= CALM
         for row in range(2 * groups):
             value = 0.0
             for j in range(modes):
@@ -291,7 +309,7 @@ def advance_general(
             if row % 2 == 0:
                 forwards = forwards and end[2] - value > 0.0
         if not forwards:
-            _careful_and_count(c, m, push, start, end, inverse_saturation, contact)
+            _careful_and_count(c, m, push, start, end, inverse_saturation)
             continue
         for j in range(modes):
             re = c.rotation[0, j] * m.modes[0, j] - c.rotation[1, j] * m.modes[1, j]
@@ -300,20 +318,34 @@ def advance_general(
                 re += c.drive_r[p, j] * m.present[p] + c.hold_r[p, j] * push[p]
                 im += c.drive_i[p, j] * m.present[p] + c.hold_i[p, j] * push[p]
             m.modes[0, j], m.modes[1, j] = re, im
-        for d in range(DEPTH - 1, 0, -1):
-            m.history[d] = m.history[d - 1]
-        m.history[0] = m.present
-        contact[:] = ahead
-        m.flags[1] = 0.0
+        _shift(m)
+        m.contact[:] = ahead
+        m.flags[1] = FROM_LAW
+    _point(operation, 1.0, end)
+    _present_g(c, m, end, inverse_saturation)
 
 
 @njit(**_OPTIONS)
-def _store_pair(m: Memory, zr: Any, zi: Any, a1: float, a2: float, a3: float, b1: float, b2: float, b3: float) -> None:
-    """Write the registers of `advance_pair` back to memory."""
-    simd.store(m.modes, 0, zr)
-    simd.store(m.modes, 1, zi)
-    m.history[0, 0], m.history[1, 0], m.history[2, 0] = a1, a2, a3
-    m.history[0, 1], m.history[1, 1], m.history[2, 1] = b1, b2, b3
+def _store_pair(
+    m: Memory,
+    modes: tuple[Any, Any],
+    past_a: tuple[float, float, float],
+    past_b: tuple[float, float, float],
+    contact: tuple[float, float, float, float],
+) -> None:
+    """Write the registers of `advance_pair` to memory."""
+    simd.store(m.modes, 0, modes[0])
+    simd.store(m.modes, 1, modes[1])
+    for d in range(PAST):
+        m.history[d, 0], m.history[d, 1] = past_a[d], past_b[d]
+    for row in range(4):
+        m.contact[row] = contact[row]
+
+
+@njit(inline="always", **_OPTIONS)
+def _product(rows_r: Array, rows_i: Array, row: int, zr: Any, zi: Any) -> float:
+    """Product of a row with the modes in registers."""
+    return simd.total(simd.multiply_add(simd.load(rows_r, row), zr, simd.multiply(simd.load(rows_i, row), zi)))
 
 
 @njit(**_OPTIONS)
@@ -331,23 +363,21 @@ def advance_pair(
     out : (n_out, O) filled with the outputs at the start of each interval
     """
     n_out, n_outputs = out.shape
-    steps = n_out * c.substeps
-    contact = np.zeros(4)
-    start, end = np.zeros(4), np.zeros(4)
-    push = np.zeros(2)
-    _contact_now(c, m, contact)
-    zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
-    a1, a2, a3 = m.history[0, 0], m.history[1, 0], m.history[2, 0]
-    b1, b2, b3 = m.history[0, 1], m.history[1, 1], m.history[2, 1]
-    da, na, db, nb = contact[0], contact[1], contact[2], contact[3]
-    h, r = c.ahead_history, c.ahead_hold
+    substeps = c.substeps
+    steps = n_out * substeps
+    start, end, push = np.zeros(4), np.zeros(4), np.zeros(2)
     n0, mu, v, k = operation[0, 0], operation[1, 0], operation[2, 0], operation[3, 0]
     n0_step = (operation[0, 1] - n0) / steps
     mu_step = (operation[1, 1] - mu) / steps
     v_step = (operation[2, 1] - v) / steps
     k_step = (operation[3, 1] - k) / steps
     share_a, share_b, mu_ref = c.share[0], c.share[1], c.mu_ref
-    calm = m.flags[0] >= ORDER
+    h, r = c.ahead_history, c.ahead_hold
+    zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
+    a1, a2, a3 = m.history[0, 0], m.history[1, 0], m.history[2, 0]
+    b1, b2, b3 = m.history[0, 1], m.history[1, 1], m.history[2, 1]
+    da, na, db, nb = m.contact[0], m.contact[1], m.contact[2], m.contact[3]
+    calm = m.flags[0] >= CALM
     ea, eb = 0.0, 0.0
     for i in range(n_out):
         if len(excitation):
@@ -356,63 +386,59 @@ def advance_pair(
         xi = simd.scale_add(simd.load(c.hold_i, 0), ea, simd.scale(simd.load(c.hold_i, 1), eb))
         x0, x1 = r[0, 0] * ea + r[0, 1] * eb, r[1, 0] * ea + r[1, 1] * eb
         x2, x3 = r[2, 0] * ea + r[2, 1] * eb, r[3, 0] * ea + r[3, 1] * eb
-        for sub in range(c.substeps):
+        for sub in range(substeps):
             if calm:
-                na0, nb0 = share_a * n0, share_b * n0
-                ga = _mu(da, mu, k, inverse_saturation) * max(na0 + na, 0.0) - mu * na0 - mu_ref * na
-                gb = _mu(db, mu, k, inverse_saturation) * max(nb0 + nb, 0.0) - mu * nb0 - mu_ref * nb
+                n0_a, n0_b = share_a * n0, share_b * n0
+                ga = _mu(da, mu, k, inverse_saturation) * max(n0_a + na, 0.0) - mu * n0_a - mu_ref * na
+                gb = _mu(db, mu, k, inverse_saturation) * max(n0_b + nb, 0.0) - mu * n0_b - mu_ref * nb
             else:
-                contact[0], contact[1], contact[2], contact[3] = da, na, db, nb
-                _point(operation, (i * c.substeps + sub) / steps, start)
-                _present_g(c, m, contact, start, inverse_saturation)
+                _point(operation, (i * substeps + sub) / steps, start)
+                _present_g(c, m, start, inverse_saturation)
                 ga, gb = m.present[0], m.present[1]
+                zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
             if sub == 0:
                 for o in range(n_outputs):
-                    oh, od = c.output_history[o], c.output_direct[o]
-                    row = simd.multiply_add(
-                        simd.load(c.output_r, o), zr, simd.multiply(simd.load(c.output_i, o), zi)
-                    )
-                    late = oh[0, 0] * a1 + oh[1, 0] * a2 + oh[2, 0] * a3 + oh[0, 1] * b1 + oh[1, 1] * b2 + oh[2, 1] * b3
-                    out[i, o] = simd.total(row) + late + od[0] * (ga + ea) + od[1] * (gb + eb)
-            # slip and compression one step ahead; only the last line of each waits for the friction law
-            p0 = simd.total(simd.multiply_add(simd.load(c.ahead_r, 0), zr, simd.multiply(simd.load(c.ahead_i, 0), zi)))
-            p1 = simd.total(simd.multiply_add(simd.load(c.ahead_r, 1), zr, simd.multiply(simd.load(c.ahead_i, 1), zi)))
-            p2 = simd.total(simd.multiply_add(simd.load(c.ahead_r, 2), zr, simd.multiply(simd.load(c.ahead_i, 2), zi)))
-            p3 = simd.total(simd.multiply_add(simd.load(c.ahead_r, 3), zr, simd.multiply(simd.load(c.ahead_i, 3), zi)))
-            q0 = h[0, 1, 0] * a1 + h[0, 2, 0] * a2 + h[0, 1, 1] * b1 + h[0, 2, 1] * b2
-            q1 = h[1, 1, 0] * a1 + h[1, 2, 0] * a2 + h[1, 1, 1] * b1 + h[1, 2, 1] * b2
-            q2 = h[2, 1, 0] * a1 + h[2, 2, 0] * a2 + h[2, 1, 1] * b1 + h[2, 2, 1] * b2
-            q3 = h[3, 1, 0] * a1 + h[3, 2, 0] * a2 + h[3, 1, 1] * b1 + h[3, 2, 1] * b2
-            next_da = (p0 + q0 + x0) + (h[0, 0, 0] * ga + h[0, 0, 1] * gb)
-            next_na = (p1 + q1 + x1) + (h[1, 0, 0] * ga + h[1, 0, 1] * gb)
-            next_db = (p2 + q2 + x2) + (h[2, 0, 0] * ga + h[2, 0, 1] * gb)
-            next_nb = (p3 + q3 + x3) + (h[3, 0, 0] * ga + h[3, 0, 1] * gb)
+                    oh, od = c.output_history, c.output_direct
+                    late_a = oh[o, 0, 0] * ga + oh[o, 1, 0] * a1 + oh[o, 2, 0] * a2 + oh[o, 3, 0] * a3
+                    late_b = oh[o, 0, 1] * gb + oh[o, 1, 1] * b1 + oh[o, 2, 1] * b2 + oh[o, 3, 1] * b3
+                    now = od[o, 0] * (ga + ea) + od[o, 1] * (gb + eb)
+                    out[i, o] = _product(c.output_r, c.output_i, o, zr, zi) + late_a + late_b + now
+            # contact motion one step ahead; only the last term of each waits for the friction law
+            p0 = _product(c.ahead_r, c.ahead_i, 0, zr, zi) + x0
+            p1 = _product(c.ahead_r, c.ahead_i, 1, zr, zi) + x1
+            p2 = _product(c.ahead_r, c.ahead_i, 2, zr, zi) + x2
+            p3 = _product(c.ahead_r, c.ahead_i, 3, zr, zi) + x3
+            p0 += (h[0, 1, 0] * a1 + h[0, 2, 0] * a2 + h[0, 3, 0] * a3) + (h[0, 1, 1] * b1 + h[0, 2, 1] * b2 + h[0, 3, 1] * b3)
+            p1 += (h[1, 1, 0] * a1 + h[1, 2, 0] * a2 + h[1, 3, 0] * a3) + (h[1, 1, 1] * b1 + h[1, 2, 1] * b2 + h[1, 3, 1] * b3)
+            p2 += (h[2, 1, 0] * a1 + h[2, 2, 0] * a2 + h[2, 3, 0] * a3) + (h[2, 1, 1] * b1 + h[2, 2, 1] * b2 + h[2, 3, 1] * b3)
+            p3 += (h[3, 1, 0] * a1 + h[3, 2, 0] * a2 + h[3, 3, 0] * a3) + (h[3, 1, 1] * b1 + h[3, 2, 1] * b2 + h[3, 3, 1] * b3)
+            next_da = p0 + (h[0, 0, 0] * ga + h[0, 0, 1] * gb)
+            next_na = p1 + (h[1, 0, 0] * ga + h[1, 0, 1] * gb)
+            next_db = p2 + (h[2, 0, 0] * ga + h[2, 0, 1] * gb)
+            next_nb = p3 + (h[3, 0, 0] * ga + h[3, 0, 1] * gb)
             n0, mu, v, k = n0 + n0_step, mu + mu_step, v + v_step, k + k_step
             if calm and v - max(next_da, next_db) > 0.0:
                 er, ei = simd.load(c.rotation, 0), simd.load(c.rotation, 1)
                 new_r = simd.negative_multiply_add(ei, zi, simd.multiply_add(er, zr, xr))
                 new_i = simd.multiply_add(er, zi, simd.multiply_add(ei, zr, xi))
-                zr = simd.scale_add(
-                    simd.load(c.drive_r, 0), ga, simd.scale_add(simd.load(c.drive_r, 1), gb, new_r)
-                )
-                zi = simd.scale_add(
-                    simd.load(c.drive_i, 0), ga, simd.scale_add(simd.load(c.drive_i, 1), gb, new_i)
-                )
+                zr = simd.scale_add(simd.load(c.drive_r, 0), ga, simd.scale_add(simd.load(c.drive_r, 1), gb, new_r))
+                zi = simd.scale_add(simd.load(c.drive_i, 0), ga, simd.scale_add(simd.load(c.drive_i, 1), gb, new_i))
                 a3, a2, a1 = a2, a1, ga
                 b3, b2, b1 = b2, b1, gb
                 da, na, db, nb = next_da, next_na, next_db, next_nb
-                m.flags[1] = 0.0
+                m.flags[1] = FROM_LAW
             else:
-                _store_pair(m, zr, zi, a1, a2, a3, b1, b2, b3)
+                _store_pair(m, (zr, zi), (a1, a2, a3), (b1, b2, b3), (da, na, db, nb))
                 m.present[0], m.present[1] = ga, gb
                 push[0], push[1] = ea, eb
-                contact[0], contact[1], contact[2], contact[3] = da, na, db, nb
-                _point(operation, (i * c.substeps + sub) / steps, start)
-                _point(operation, (i * c.substeps + sub + 1) / steps, end)
-                _careful_and_count(c, m, push, start, end, inverse_saturation, contact)
-                calm = m.flags[0] >= ORDER
+                _point(operation, (i * substeps + sub) / steps, start)
+                _point(operation, (i * substeps + sub + 1) / steps, end)
+                _careful_and_count(c, m, push, start, end, inverse_saturation)
+                calm = m.flags[0] >= CALM
                 zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
                 a1, a2, a3 = m.history[0, 0], m.history[1, 0], m.history[2, 0]
                 b1, b2, b3 = m.history[0, 1], m.history[1, 1], m.history[2, 1]
-                da, na, db, nb = contact[0], contact[1], contact[2], contact[3]
-    _store_pair(m, zr, zi, a1, a2, a3, b1, b2, b3)
+                da, na, db, nb = m.contact[0], m.contact[1], m.contact[2], m.contact[3]
+    _store_pair(m, (zr, zi), (a1, a2, a3), (b1, b2, b3), (da, na, db, nb))
+    _point(operation, 1.0, end)
+    _present_g(c, m, end, inverse_saturation)

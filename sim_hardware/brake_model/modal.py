@@ -4,16 +4,19 @@ The linear brake (constant mu_ref, no falling slope) is x' = A x + B g, with one
 that slide along the same direction of motion (the two contacts of a rigid pad) share one scalar friction force. In
 modes eta = V^-1 x each equation is eta' = lambda eta + b g and is integrated exactly for a polynomial g(t).
 
-Main step (exponential Adams-Bashforth of order K): g(t) over the step is the polynomial through its last K values:
+Main step (exponential Adams-Moulton, predicted once): g(t) over the step is the polynomial through its new value and
+the last four; the new value is the friction law at the contact motion predicted with g extrapolated through the last
+four. The prediction error enters only through what one step of friction does to the slip, about 1e-3 of it, so that the
+law is evaluated once per step and the accuracy is that of the implicit method:
 
-    eta[n+1] = E eta[n] + sum_i W_i g[n-i],  i = 0..K-1
+    eta[n+1] = E eta[n] + W_new g[n+1] + sum_i W_i g[n-i],  i = 0..3
 
-and with s = eta - sum_i R_i g[n-i], i = 1..K-1, the same recursion needs one input vector only:
+and with s = eta - sum_i R_i g[n-i], i = 0..3, the same recursion needs one input vector only:
 
-    s[n+1] = E s[n] + beta g[n],   beta = sum_i W_i E^-i,   R_i from  W_(i-1) = R_i - E R_(i-1)
+    s[n+1] = E s[n] + beta g[n],   R_0 = W_new,   W_0 = beta + R_1 - E R_0,   W_i = R_(i+1) - E R_i
 
-so that a high order costs no more than a low one. Fine step (around slip reversals): g linear over the step between its
-two ends (first-order hold), the end value implicit.
+so that the high order costs no more than a low one. Fine step (around slip reversals): g linear over the step between
+its two ends (first-order hold), the end value implicit.
 NOT its job: the friction law, the recursion itself (`kernels`), choice of outputs (`outputs`).
 """
 
@@ -181,7 +184,7 @@ def hold_weights(eigenvalues: Complex, step_s: float, nodes: Array) -> Complex:
 class MultistepForm:
     """Coefficients of the main step in the s form (module docstring), per mode.
 
-    rotation : (m,) E; drive : (m, n_groups) beta; history : (K-1, m, n_groups) R; hold : (m, n_groups) sum_i W_i
+    rotation : (m,) E; drive : (m, n_groups) beta; history : (4, m, n_groups) R; hold : (m, n_groups) for a constant input
     """
 
     rotation: Complex
@@ -190,19 +193,26 @@ class MultistepForm:
     hold: Complex
 
 
-def multistep_form(system: ModalSystem, step_s: float, order: int) -> MultistepForm:
-    """Discretise for the exponential Adams-Bashforth step of an order."""
-    weights = hold_weights(system.eigenvalues, step_s, -np.arange(order, dtype=float))
+#: times, in steps, of the values of g that the main step's polynomial runs through: new, present, three past
+NODES = np.array([1.0, 0.0, -1.0, -2.0, -3.0])
+#: extrapolation of g to the new time from the present and three past values (cubic)
+EXTRAPOLATION = np.array([4.0, -6.0, 4.0, -1.0])
+
+
+def multistep_form(system: ModalSystem, step_s: float) -> MultistepForm:
+    """Discretise for the main step of length `step_s`."""
+    new, *past = hold_weights(system.eigenvalues, step_s, NODES)
     rotation = np.exp(system.eigenvalues * step_s)
-    history = np.zeros((order - 1, len(rotation)), dtype=complex)
-    following = np.zeros_like(rotation)  # R_K = 0
-    for i in range(order - 1, 0, -1):  # W_i = R_(i+1) - E R_i
-        following = (following - weights[i]) / rotation
-        history[i - 1] = following
-    drive = weights[0] - (history[0] if order > 1 else 0.0)  # W_0 = beta + R_1
+    history = np.zeros((len(past), len(rotation)), dtype=complex)
+    following = np.zeros_like(rotation)  # no term beyond the last
+    for i in range(len(past) - 1, 0, -1):
+        following = (following - past[i]) / rotation  # R_i = (R_(i+1) - W_i) / E
+        history[i] = following
+    history[0] = new
+    drive = past[0] - history[1] + rotation * new  # beta
     return MultistepForm(
         rotation,
         drive[:, None] * system.inputs,
         history[:, :, None] * system.inputs,
-        weights.sum(axis=0)[:, None] * system.inputs,
+        (new + sum(past))[:, None] * system.inputs,
     )
