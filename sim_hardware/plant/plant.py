@@ -1,0 +1,251 @@
+"""The simulated rig around the brake: `step` advances it, `render_sound` delivers the microphone.
+
+Job: the seam between rig units and SI, sensor errors, random streams, bookkeeping of steps.
+NOT its job: the equations (`slow_physics`, `sound`, `sim_hardware.brake_model`), time pacing and messages
+(`sim_hardware.devices`).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigctl.core.channels import DISC_TEMPERATURE, MICROPHONE, PRESSURE, SPEED, TORQUE, ChannelSpec
+from rigctl.core.units import KELVIN_AT_0_DEGC, M3_S_PER_M3_H, PA_PER_BAR, RAD_S_PER_RPM
+from sim_hardware.brake_model import Brake
+from sim_hardware.plant import slow_physics
+from sim_hardware.plant.layout import TRACK, Record, constants, initial_state
+from sim_hardware.plant.settings import FULL_RATE_HZ, TICK_S, PlantSettings, SensorError
+from sim_hardware.plant.sound import SOUND_HZ, Sound
+from sim_hardware.plant.words import Commands, PlantStep, PlantTruth
+
+TICK_NS = round(TICK_S * 1e9)
+#: while nothing is recorded slow channels come at 4000 / 200 = 20 Hz and mechanics advance by 10 ticks = 2.5 ms
+MONITOR_STRIDE = 200
+MONITOR_INNER = 10
+_SLOW = (TORQUE, PRESSURE, SPEED, DISC_TEMPERATURE)
+_SCATTER_LIMIT = 3.0
+
+
+class Plant:
+    """A simulated rig with its brake. Deterministic: the same seed and calls give the same samples bit for bit.
+
+    Parameters
+    ----------
+    settings : physical values
+    brake : the brake inside the rig
+    seed : of all noise and scatter
+
+    Attributes
+    ----------
+    channels : everything the rig measures, microphone first
+    sound_channel : the microphone
+    ventilator_max_m3_h : full flow
+
+    Raises
+    ------
+    ConfigError
+        settings that do not fit the brake
+    """
+
+    def __init__(self, settings: PlantSettings, brake: Brake, *, seed: int) -> None:
+        self.settings = settings
+        self.brake = brake
+        self.channels = _channels(settings)
+        self.sound_channel = self.channels[0]
+        self.ventilator_max_m3_h = settings.thermal.ventilator_max_m3_h
+        streams = np.random.SeedSequence(seed).spawn(4)
+        scatter, sensors, safety, sound = (np.random.Generator(np.random.SFC64(stream)) for stream in streams)
+        self._scatter_random, self._sensor_random, self._safety_random = scatter, sensors, safety
+        self._sound = Sound(settings, brake, sound)
+        self._constants: dict[int, Record] = {}
+        self._state = initial_state(settings)
+        self._queue_tick, self._queue_value = slow_physics.empty_queue()
+        self._requested_pa = 0.0
+        self._relay_closed = False
+        self._pending: tuple[NDArray[np.float64], int, bool] | None = None
+        self._sensor = _errors((s := settings.sensors).torque, s.pressure, s.speed, SensorError(
+            gain=1.0, offset=0.0, noise=settings.pyrometer.noise_k))  # fmt: skip
+        own = settings.safety_sensors
+        self._safety_sensor = _errors(own.pressure, own.speed, own.torque, own.temperature)
+        self._draw_scatter()
+
+    def compile(self) -> None:
+        """Compile (or load) all kernels, without touching this rig."""
+        scratch = Plant(self.settings, self.brake, seed=0)
+        run = Commands(
+            speed_set_rpm=40.0,
+            speed_ramp_rpm_per_s=400.0,
+            drive_enabled=True,
+            pressure_set_bar=10.0,
+            relay_closed=True,
+        )
+        scratch.step(500_000_000, run, full_rate=False)
+        scratch.step(50_000_000, run, full_rate=True)
+        scratch.render_sound()
+
+    def step(self, dt_ns: int, commands: Commands, *, full_rate: bool) -> PlantStep:
+        """Advance the rig.
+
+        Parameters
+        ----------
+        dt_ns : length of the step, a whole number of 0.25 ms
+        commands : hold for the whole step
+        full_rate : True: 4 kHz samples, and `render_sound` may follow; False: 20 Hz samples, no sound
+
+        Raises
+        ------
+        ValueError
+            a length that is not a positive whole number of ticks, a set-point that is not finite
+        """
+        ticks, rest = divmod(dt_ns, TICK_NS)
+        if rest or ticks <= 0:
+            raise ValueError(f"dt_ns is {dt_ns}; give a positive multiple of {TICK_NS} ns")
+        points = (
+            commands.speed_set_rpm,
+            commands.speed_ramp_rpm_per_s,
+            commands.pressure_set_bar,
+            commands.ventilator_m3_h,
+        )
+        if not all(map(math.isfinite, points)):
+            raise ValueError(f"set-points (speed, ramp, pressure, air flow) {points}: give finite numbers")
+        stride = 1 if full_rate else math.gcd(ticks, MONITOR_STRIDE)
+        inner = 1 if full_rate else math.gcd(stride, MONITOR_INNER)
+        if self._pending is not None:  # the sound of the step before was not wanted
+            self._sound.forget()
+        rows = -(-ticks // slow_physics.SAFETY_TICKS)
+        out = np.empty((4, ticks // stride))
+        safety = np.empty((4, rows))
+        track = np.empty((rows + 1 if full_rate else 0, len(TRACK)))
+        drive_on = commands.drive_enabled and commands.relay_closed
+        self._request_pressure(commands.pressure_set_bar * PA_PER_BAR)
+        flow = min(max(commands.ventilator_m3_h, 0.0), self.ventilator_max_m3_h) * M3_S_PER_M3_H
+        slow_physics.advance(
+            self._constants_for(inner), self._state, self._queue_tick, self._queue_value, ticks, inner, stride,
+            commands.speed_set_rpm * RAD_S_PER_RPM, max(commands.speed_ramp_rpm_per_s, 0.0) * RAD_S_PER_RPM,
+            drive_on, commands.quick_stop, commands.vent or not commands.relay_closed, flow, out, safety, track,
+        )  # fmt: skip
+        self._relay_closed = commands.relay_closed
+        self._pending = (track, ticks, drive_on) if full_rate else None
+        if not full_rate:
+            self._sound.forget()
+        if self._state["scatter_used"][0]:
+            self._draw_scatter()
+        return PlantStep(self._measured(out), self._safety_readings(safety), stride)
+
+    def render_sound(self) -> NDArray[np.int16]:
+        """Sound of the last step, int16 counts of `sound_channel`, 40 kHz.
+
+        Raises
+        ------
+        RuntimeError
+            the last step was not at full rate, or its sound was delivered already
+        """
+        if self._pending is None:
+            raise RuntimeError("no sound: call render_sound once after a step with full_rate=True")
+        track, ticks, drive_on = self._pending
+        self._pending = None
+        return self._sound.render(track, ticks, drive_on)
+
+    @property
+    def truth(self) -> PlantTruth:
+        """True values at the end of the last step, for tests and for who must know when the rig is at rest."""
+        s = self._state[0]
+        bedding = 1.0 - math.exp(-float(s["bedding_energy"]) / self.settings.friction.bedding_energy_j)
+        return PlantTruth(
+            time_s=int(s["tick"]) * TICK_S,
+            speed_rpm=float(s["omega"]) / RAD_S_PER_RPM,
+            motor_torque_nm=float(s["motor_torque"]),
+            brake_torque_nm=float(s["brake_torque"]),
+            pressure_bar=float(s["pressure"]) / PA_PER_BAR,
+            surface_degc=float(s["surface"]) - KELVIN_AT_0_DEGC,
+            bulk_degc=float(s["bulk"]) - KELVIN_AT_0_DEGC,
+            pad_degc=float(s["pad"]) - KELVIN_AT_0_DEGC,
+            mu=float(s["mu"]),
+            slope_s_m=float(s["slope"]),
+            bedding=bedding,
+            friction_energy_j=float(s["friction_energy"]),
+            loss_energy_j=float(s["loss_energy"]),
+            ventilator_m3_h=float(s["flow"]) / M3_S_PER_M3_H,
+            relay_closed=self._relay_closed,
+        )
+
+    # -- inside ----------------------------------------------------------------------------------------------------
+
+    def _constants_for(self, inner: int) -> Record:
+        if inner not in self._constants:
+            self._constants[inner] = constants(
+                self.settings, self.brake.piston_area_m2, self.brake.effective_radius_m, inner
+            )
+        return self._constants[inner]
+
+    def _request_pressure(self, pressure_pa: float) -> None:
+        """A new set-point reaches the regulator after its dead time."""
+        if pressure_pa == self._requested_pa:
+            return
+        self._requested_pa = pressure_pa
+        state = self._state[0]
+        place = min(int(state["queued"]), slow_physics.QUEUE - 1)
+        self._queue_tick[place] = int(state["tick"]) + round(self.settings.pressure.dead_time_s / TICK_S)
+        self._queue_value[place] = min(
+            max(pressure_pa, 0.0), self.settings.pressure.max_pressure_bar * PA_PER_BAR
+        )
+        self._state["queued"] = place + 1
+
+    def _draw_scatter(self) -> None:
+        """Stop-to-stop scatter of the next braking; it takes effect when its pressure comes on."""
+        friction = self.settings.friction
+        draws = np.clip(self._scatter_random.standard_normal(2), -_SCATTER_LIMIT, _SCATTER_LIMIT)
+        self._state["next_mu"] = 1.0 + friction.scatter_mu * draws[0]
+        self._state["next_slope"] = 1.0 + friction.scatter_slope * draws[1]
+        self._state["scatter_used"] = 0
+
+    def _measured(self, true: NDArray[np.float64]) -> dict[str, NDArray[np.float32]]:
+        """Readings of the controller's sensors from true values (SI), (4, n): torque, pressure, speed, temperature."""
+        noise = self._sensor_random.standard_normal((true.shape[1], 4), dtype=np.float32).T
+        true *= (_TO_RIG * self._sensor[0])[:, None]
+        true += (_ZERO * self._sensor[0] + self._sensor[1])[:, None]
+        readings = (true + noise * self._sensor[2][:, None]).astype(np.float32)
+        return dict(zip(_SLOW, readings, strict=True))
+
+    def _safety_readings(self, true: NDArray[np.float64]) -> dict[str, list[float]]:
+        """Readings of the watchdog's own sensors from true values (SI), (4, n): pressure, speed, torque, temperature."""
+        gain, offset, sigma = self._safety_sensor
+        noise = self._safety_random.standard_normal((true.shape[1], 4)).T
+        rig = true * _SAFETY_TO_RIG[:, None] + _ZERO[:, None]
+        readings = np.round(rig * gain[:, None] + offset[:, None] + noise * sigma[:, None], 3)
+        return dict(zip("pnMT", readings.tolist(), strict=True))
+
+
+_TO_RIG = np.array([1.0, 1.0 / PA_PER_BAR, 1.0 / RAD_S_PER_RPM, 1.0])
+_SAFETY_TO_RIG = np.array([1.0 / PA_PER_BAR, 1.0 / RAD_S_PER_RPM, 1.0, 1.0])
+_ZERO = np.array([0.0, 0.0, 0.0, -KELVIN_AT_0_DEGC])
+
+
+def _errors(*sensors: SensorError) -> tuple[NDArray[np.float64], ...]:
+    """Gains, offsets and noise of some sensors, (n,) each."""
+    columns = zip(*((sensor.gain, sensor.offset, sensor.noise) for sensor in sensors), strict=True)
+    return tuple(np.array(column) for column in columns)
+
+
+def _channels(settings: PlantSettings) -> tuple[ChannelSpec, ...]:
+    microphone = settings.microphone
+    return (
+        ChannelSpec(
+            MICROPHONE,
+            "Pa",
+            float(SOUND_HZ),
+            "int16",
+            scale=microphone.full_scale_pa / 32768.0,
+            description=f"half-inch free-field microphone, {1000.0 * microphone.sensitivity_v_pa:g} mV/Pa, "
+            f"{settings.radiation.microphone_distance_m:g} m from the brake",
+        ),
+        ChannelSpec(
+            TORQUE, "N·m", FULL_RATE_HZ, description="force sensor of the frame that carries the brake"
+        ),
+        ChannelSpec(PRESSURE, "bar", FULL_RATE_HZ, description="brake line at the caliper"),
+        ChannelSpec(SPEED, "1/min", FULL_RATE_HZ, description="encoder of the drive"),
+        ChannelSpec(DISC_TEMPERATURE, "°C", FULL_RATE_HZ, description="pyrometer on the rub track"),
+    )
