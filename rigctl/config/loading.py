@@ -48,9 +48,8 @@ def read_toml(path: Path) -> dict[str, Any]:
     ConfigError
         The file is missing, cannot be read, or is not TOML.
     """
-    with translated(path):
-        with path.open("rb") as file:
-            return tomllib.load(file)
+    with translated(path), path.open("rb") as file:
+        return tomllib.load(file)
     raise AssertionError  # `translated` has raised
 
 
@@ -79,11 +78,15 @@ def translated(
     except FileNotFoundError as error:
         raise ConfigError("no such file.", place=place, remedy=_near_file(path)) from error
     except IsADirectoryError as error:
-        raise ConfigError("this is a folder, not a file.", place=place, remedy="Name a .toml file.") from error
+        raise ConfigError(
+            "this is a folder, not a file.", place=place, remedy="Name a .toml file."
+        ) from error
     except UnicodeDecodeError as error:
         raise ConfigError("not a text file in UTF-8.", place=place, remedy="Name a .toml file.") from error
     except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"not valid TOML: {error}.", place=place, remedy="Correct the line named.") from error
+        raise ConfigError(
+            f"not valid TOML: {error}.", place=place, remedy="Correct the line named."
+        ) from error
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror}.", place=place) from error
     except ValidationError as error:

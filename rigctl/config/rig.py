@@ -12,6 +12,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from sequences.capabilities import RigCapabilities
+
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
 
@@ -44,38 +46,13 @@ class Devices(_Frozen):
     safety: DeviceConfig
 
 
-class Capabilities(_Frozen):
-    """What set-points the rig accepts. Every program is checked against these before anything moves."""
-
-    max_pressure_bar: Annotated[float, Field(gt=0, le=200)]
-    max_speed_rpm: Annotated[float, Field(gt=0, le=3000)]
-    max_speed_ramp_rpm_per_s: Positive
-    max_torque_nm: Positive
-    max_power_kw: Positive
-    max_disc_temperature_degc: Annotated[float, Field(gt=0, le=900)]
-    ambient_degc: Annotated[float, Field(ge=-20, le=60)] = 20.0
-    min_conditioning_margin_k: Positive = 4.0
-    ventilator_max_m3_h: NotNegative
-
-
-class Estimates(_Frozen):
-    """Lumped values for the estimate of a program's duration; they do not influence the run."""
-
-    heat_capacity_j_k: Positive
-    heat_loss_still_w_k: Positive
-    heat_loss_ventilated_w_k: Positive
-    mu: Positive = 0.42
-
-
 class ConditioningConfig(_Frozen):
-    """How the disc is brought to a temperature: by dragging the brake, or by the ventilator."""
+    """How the disc is brought to a temperature; heating speed and pressure are among the capabilities."""
 
-    heating_speed_rpm: Positive
-    heating_pressure_bar: Positive
     cooling_speed_rpm: Positive
     soak_speed_rpm: Positive
+    ventilator_m3_h: Positive
     idle_block_s: Annotated[float, Field(ge=0.05, le=1.0)] = 0.5
-    ventilator_settle_s: NotNegative = 3.0
 
 
 class FrictionConfig(_Frozen):
@@ -99,13 +76,12 @@ class SafetyConfig(_Frozen):
 
 
 class RigConfig(_Frozen):
-    """A rig file, validated. Paths are resolved against the folder of the file by `rigctl.config.rig_file`."""
+    """A rig file, validated. Relative paths in it start at the folder of the file."""
 
     name: Annotated[str, Field(min_length=1, max_length=120)]
     simulated: bool
     devices: Devices
-    capabilities: Capabilities
-    estimates: Estimates
+    capabilities: RigCapabilities
     conditioning: ConditioningConfig
     friction: FrictionConfig
     safety: SafetyConfig

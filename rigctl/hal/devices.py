@@ -89,6 +89,16 @@ class Device(Protocol):
 class SpeedDrive(Device, Protocol):
     """The motor and its controller."""
 
+    @property
+    def commanded_rpm(self) -> float:
+        """Speed set-point in force."""
+        ...
+
+    @property
+    def enabled(self) -> bool:
+        """True when torque has been asked for."""
+        ...
+
     def enable(self) -> None:
         """Allow torque. The speed set-point is zero until `set_speed`. Raises `DeviceError` if refused."""
         ...
@@ -108,6 +118,11 @@ class SpeedDrive(Device, Protocol):
 
 class PressureActuator(Device, Protocol):
     """Actuator of the brake line pressure."""
+
+    @property
+    def commanded_bar(self) -> float:
+        """Pressure set-point in force; 0 when vented."""
+        ...
 
     def set_pressure(self, pressure_bar: float) -> None:
         """Hold this line pressure; takes effect with the actuator's own lag."""

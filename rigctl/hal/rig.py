@@ -123,4 +123,4 @@ class Rig:
                 self.pressure.vent()
         if "drive" in self._opened:
             with contextlib.suppress(RigctlError):
-                self.drive.set_speed(0.0, self.config.capabilities.max_speed_ramp_rpm_per_s)
+                self.drive.set_speed(0.0, self.config.capabilities.max_speed_rate_rpm_s)

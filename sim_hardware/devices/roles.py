@@ -53,6 +53,16 @@ class SimulatedDrive(_Simulated):
 
     role = "drive"
 
+    @property
+    def commanded_rpm(self) -> float:
+        """See `SpeedDrive.commanded_rpm`."""
+        return self._session.setpoints.speed_rpm
+
+    @property
+    def enabled(self) -> bool:
+        """See `SpeedDrive.enabled`."""
+        return self._session.setpoints.enable
+
     def enable(self) -> None:
         """See `SpeedDrive.enable`."""
         if not self._session.status.get("relay", False):
@@ -81,6 +91,11 @@ class SimulatedPressureActuator(_Simulated):
     """Pressure actuator of the simulated rig."""
 
     role = "pressure"
+
+    @property
+    def commanded_bar(self) -> float:
+        """See `PressureActuator.commanded_bar`."""
+        return self._session.setpoints.pressure_bar
 
     def set_pressure(self, pressure_bar: float) -> None:
         """See `PressureActuator.set_pressure`."""

@@ -259,11 +259,11 @@ def main() -> None:
 
     from rigctl.config.loading import load_model
     from rigctl.core.ring import SampleRing
-    from sim_hardware.brake_model import Brake, load_brake
+    from sim_hardware.brake_model import load_brake
     from sim_hardware.plant import Plant, PlantSettings
 
     settings = load_model(options.plant, PlantSettings)
-    plant = Plant(settings, Brake(load_brake(options.brake)), seed=options.seed)
+    plant = Plant(settings, load_brake(options.brake), seed=options.seed)
     ring = SampleRing.create(options.run_dir / RING_NAME, plant.channels)
     plant.compile()
     server = RigServer(plant, ring, real_time=options.time == "real")

@@ -79,7 +79,7 @@ class SimulatedSession:
         log_dir = self._context.log_dir
         log = (log_dir / "rig.log").open("ab") if log_dir else None
         try:
-            # A session of its own: Ctrl-C in the terminal and the controller's death do not reach "the hardware".
+            # A session of its own: Ctrl-C and the controller's death do not reach "the hardware".
             self._process = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True
             )
@@ -117,7 +117,13 @@ class SimulatedSession:
         self.status = message["status"]
         ranges = {name: (start, stop) for name, (start, stop) in message["ranges"].items()}
         return Block(
-            message["k"], message["t_ns"], message["dt_ns"], ranges, self._ring, message["stride"], self.status
+            message["k"],
+            message["t_ns"],
+            message["dt_ns"],
+            ranges,
+            self._ring,
+            message["stride"],
+            self.status,
         )
 
     def close(self) -> None:

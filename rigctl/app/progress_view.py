@@ -1,0 +1,119 @@
+"""What a person sees in the terminal while a program runs.
+
+Job: one live line on a terminal, a plain line every few seconds elsewhere (CI logs): braking, phase,
+readings, simulated-time factor, time left. Not its job: the run.
+"""
+
+from __future__ import annotations
+
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+from rich.progress import Progress as Bar
+
+from rigctl.engine.state import Progress
+from sequences.capabilities import RigCapabilities
+from sequences.estimate import ThermalWalk
+from sequences.program import Program
+
+PLAIN_LINE_EVERY_S = 5.0
+
+
+class ProgressView:
+    """Shows the progress of a run; use it as a context manager."""
+
+    def __init__(self, console: Console, program: Program, capabilities: RigCapabilities) -> None:
+        self._console = console
+        self._cumulated_s = _cumulated(program, capabilities)
+        self._started = time.monotonic()
+        self._first: tuple[float, float] | None = None
+        self._line_at = 0.0
+        self._bar = Bar(
+            TextColumn("{task.fields[state]}"),
+            BarColumn(bar_width=24),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[text]}"),
+            console=console,
+            refresh_per_second=8,
+            disable=not console.is_terminal,
+        )
+        self._task = self._bar.add_task("", total=program.count, state="starting", text="")
+
+    def __enter__(self) -> ProgressView:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()
+
+    def show(self, progress: Progress) -> None:
+        """Show the newest progress."""
+        text = self._text(progress)
+        if self._console.is_terminal:
+            self._bar.update(self._task, completed=progress.done, state=progress.state.value, text=text)
+            return
+        now = time.monotonic()
+        if now >= self._line_at:
+            self._line_at = now + PLAIN_LINE_EVERY_S
+            self._console.print(
+                f"{progress.state.value}  {progress.done}/{progress.total}  {text}", highlight=False
+            )
+
+    def say(self, line: str) -> None:
+        """A line of news."""
+        self._console.print(line, highlight=False)
+
+    def _text(self, progress: Progress) -> str:
+        parts = [
+            f"#{progress.braking} {progress.phase}",
+            f"{progress.temperature_degc:.0f} °C {progress.speed_rpm:.0f} 1/min",
+            f"{progress.pressure_bar:.1f} bar",
+            f"{progress.squealing} squealing",
+        ]
+        if progress.incomplete:
+            parts.append(f"{progress.incomplete} incomplete")
+        factor, left = self._pace(progress)
+        if factor is not None:
+            parts.append(f"{factor:.0f}× real time")
+        if left is not None:
+            parts.append(f"{duration_text(left)} left")
+        return "  ".join(parts)
+
+    def _pace(self, progress: Progress) -> tuple[float | None, float | None]:
+        """Rig seconds per wall second, and wall seconds left by the estimate of the dry run."""
+        done_s = self._cumulated_s[max(progress.braking - 1, 0)]
+        now = time.monotonic()
+        if self._first is None:
+            self._first = (now, done_s)
+            return None, None
+        elapsed = now - self._first[0]
+        progressed = done_s - self._first[1]
+        if elapsed < 1.0:
+            return None, None
+        factor = progress.rig_s / elapsed
+        left = (self._cumulated_s[-1] - done_s) * elapsed / progressed if progressed > 0 else None
+        return factor, left
+
+
+def duration_text(seconds: float) -> str:
+    """A duration as people write it: 42 s, 3 min 20 s, 5 h 10 min."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+def _cumulated(program: Program, capabilities: RigCapabilities) -> list[float]:
+    """Estimated rig time at the start of each braking, and at the end: n + 1 values."""
+    walk = ThermalWalk(capabilities, None)
+    times = [0.0]
+    for braking in program.brakings():
+        walk.step(braking)
+        times.append(walk.estimate.total_s)
+    return times

@@ -1,0 +1,162 @@
+"""`rigctl run` and `rigctl resume`: check, freeze, supervise, report, tell.
+
+Job: the course of one campaign from files to exit code. Not its job: option parsing (`rigctl.app.cli`),
+processes (`rigctl.app.supervisor`).
+"""
+
+from __future__ import annotations
+
+import secrets
+import shutil
+import threading
+import time
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from rich.console import Console
+
+from rigctl.app import campaign_file, exit_codes
+from rigctl.app.campaign_file import CampaignFile
+from rigctl.app.compose import build_rig, dry_run, prediction_of, problems_text, read_program, read_rig
+from rigctl.app.progress_view import ProgressView, duration_text
+from rigctl.app.reporting import make_report
+from rigctl.app.supervisor import Supervisor
+from rigctl.core.errors import ConfigError
+from rigctl.core.journal import read_journal
+from rigctl.engine.state import Outcome, RunResult
+from rigctl.hal.devices import RigContext
+from rigctl.recording.campaign import Campaign, create_campaign, open_campaign, require_free_space
+from rigctl.recording.recovery import recover
+from rigctl.safety.limits import load_limits
+
+DISK_RESERVE_BYTES = 500e6
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What a person has chosen on the command line."""
+
+    program: Path
+    rig: Path
+    out: Path
+    name: str | None
+    seed: int | None
+    time: str
+
+
+def run(options: RunOptions, console: Console) -> int:
+    """Run a program from its start in a new campaign; returns the exit code.
+
+    Raises
+    ------
+    ConfigError
+        Something is wrong with a file or option; nothing was started.
+    """
+    program = read_program(options.program)
+    rig = read_rig(options.rig)
+    limits = load_limits((options.rig.resolve().parent / rig.safety.limits).resolve())
+    if rig.prediction is not None:
+        prediction_of((options.rig.resolve().parent / rig.prediction.brake).resolve())
+    context = RigContext(Path(), options.time, options.seed, str(options.rig), options.rig.resolve().parent)
+    build_rig(rig, context)
+    result = dry_run(program, rig)
+    if not result.ok:
+        raise ConfigError(problems_text(result, str(options.program)))
+    name = options.name or f"{program.name}-{datetime.now():%Y%m%d-%H%M%S}"
+    require_free_space(options.out, DISK_RESERVE_BYTES + 2 * result.data_bytes)
+    file, copies = campaign_file.freeze(
+        name,
+        program=program,
+        program_path=options.program,
+        rig=rig,
+        rig_path=options.rig,
+        time=options.time,
+        seed=secrets.randbelow(2**31) if options.seed is None else options.seed,
+        limits_hash8=limits.hash8,
+    )
+    campaign = create_campaign(options.out / name, file.model_dump(mode="json", exclude_none=True))
+    with campaign.lock("run"):
+        for target, source in copies.items():
+            (campaign.folder / target).parent.mkdir(exist_ok=True)
+            shutil.copyfile(source, campaign.folder / target)
+        console.print(
+            f"{program.count} brakings on {rig.name}, about {duration_text(result.estimated_duration_s)} "
+            f"of rig time; seed {file.seed}",
+            highlight=False,
+        )
+        console.print(f"Campaign {campaign.folder}", highlight=False)
+        return _carry_out(campaign, file, attempt=0, done=[], console=console)
+
+
+def resume(folder: Path, console: Console) -> int:
+    """Recover what a broken run has left, then go on with the first braking that is not complete."""
+    file = CampaignFile.load(folder)
+    campaign = open_campaign(folder)
+    with campaign.lock("run"):
+        _recover(campaign, console)
+        done = campaign.completed_indices()
+        left = file.program.count - len(done)
+        if left == 0:
+            console.print(f"All {file.program.count} brakings are complete already.", highlight=False)
+            make_report(folder, console)
+            return exit_codes.OK
+        console.print(f"{len(done)} brakings are complete, {left} are left.", highlight=False)
+        attempt = sum(1 for record in read_journal(campaign.journal_path) if record.kind == "run_started")
+        return _carry_out(campaign, file, attempt=attempt, done=sorted(done), console=console)
+
+
+def _recover(campaign: Campaign, console: Console) -> None:
+    for line in recover(campaign).lines():
+        console.print(line, highlight=False)
+
+
+def _carry_out(
+    campaign: Campaign, file: CampaignFile, *, attempt: int, done: list[int], console: Console
+) -> int:
+    threading.Thread(target=_warm_up_figures, daemon=True).start()
+    started = time.monotonic()
+    with ProgressView(console, file.program, file.rig.capabilities) as view:
+        supervisor = Supervisor(
+            campaign.folder, file, attempt=attempt, done=done, show=view.show, say=view.say
+        )
+        result = supervisor.run()
+    wall_s = time.monotonic() - started
+    if any(campaign.spools.iterdir()):
+        _recover(campaign, console)
+    _tell(result, wall_s, console)
+    make_report(campaign.folder, console, wall_s=wall_s, rig_s=result.rig_s)
+    return _end(result, campaign.folder, console)
+
+
+def _warm_up_figures() -> None:
+    """Load the plotting library while the rig is busy; the report needs it in the end."""
+    import matplotlib.figure  # noqa: F401
+
+
+def _tell(result: RunResult, wall_s: float, console: Console) -> None:
+    factor = result.rig_s / wall_s if wall_s > 0 else 0.0
+    console.print(
+        f"{result.done} of {result.total} brakings complete; {duration_text(result.rig_s)} of rig time in "
+        f"{wall_s:.1f} s ({factor:.0f}× real time)",
+        highlight=False,
+    )
+
+
+def _end(result: RunResult, folder: Path, console: Console) -> int:
+    again = f"Go on with: rigctl resume {folder}"
+    if result.outcome is Outcome.FINISHED:
+        if not result.incomplete:
+            return exit_codes.OK
+        console.print(f"Incomplete: {', '.join(map(str, result.incomplete))}. {again}", highlight=False)
+        return exit_codes.INCOMPLETE
+    if result.outcome is Outcome.STOPPED:
+        console.print(f"Stopped safely. {again}", highlight=False)
+        return exit_codes.STOPPED
+    tripped = result.outcome is Outcome.TRIPPED
+    head = "SAFETY TRIP" if tripped else "FAILED"
+    console.print(f"[bold]{head}[/bold]: {result.cause}", highlight=False)
+    if result.remedy:
+        console.print(result.remedy, highlight=False)
+    console.print(f"See {folder / 'journal.jsonl'}. {again}", highlight=False)
+    return exit_codes.TRIPPED if tripped else exit_codes.FAILED

@@ -1,0 +1,1 @@
+"""The sequence engine: executes a program on a rig, driven by blocks."""

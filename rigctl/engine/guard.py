@@ -1,0 +1,118 @@
+"""The controller's side of the watchdog: heartbeats made by the control loop, and what the watchdog says.
+
+Job: answer the watchdog's challenge once per block, only after the loop has passed all its checkpoints;
+tell the engine when the watchdog is armed, has tripped, or is gone. Not its job: limits and decisions.
+
+Decisions use the watchdog's answer to earlier blocks only, so that a run in virtual time does not depend on
+which of the two processes was quicker.
+"""
+
+from __future__ import annotations
+
+import zlib
+from enum import IntFlag
+from typing import Any
+
+from rigctl.core.errors import LinkClosed, SafetyTrip
+from rigctl.core.wire import Link, Message
+
+
+class Checkpoint(IntFlag):
+    """What the control loop must have done before it may say that it is alive."""
+
+    BLOCK_RECEIVED = 1
+    ENGINE_STEPPED = 2
+    RECORDER_TOLD = 4
+    SETPOINTS_MADE = 8
+
+
+class Guard:
+    """Connection of the control loop to the watchdog.
+
+    Parameters
+    ----------
+    link : Link
+        Connected to the watchdog's socket.
+    limits_hash8 : str
+        First eight characters of the hash of the limits that the controller believes are in force.
+    """
+
+    def __init__(self, link: Link, limits_hash8: str) -> None:
+        self._link = link
+        self._hash8 = limits_hash8
+        self._newer: list[Message] = []
+        self._mask = Checkpoint(0)
+        self._nonce = 0
+        self.state = "locked"
+        self.cause: str | None = None
+        self.remedy: str | None = None
+        self.refusal: str | None = None
+
+    def hello(self, *, run_id: str, pid: int, campaign: str) -> None:
+        """Say who is driving."""
+        self._link.send({"m": "hello", "run_id": run_id, "pid": pid, "campaign": campaign})
+
+    def arm(self) -> None:
+        """Ask for the safety relay. The watchdog closes it when it has seen enough good blocks."""
+        self._link.send({"m": "arm"})
+
+    def disarm(self) -> None:
+        """Motion has ceased for good: give the relay back."""
+        self._link.send({"m": "disarm"})
+
+    def passed(self, checkpoint: Checkpoint) -> None:
+        """The loop has passed a checkpoint of this block."""
+        self._mask |= checkpoint
+
+    def update(self, k: int) -> None:
+        """Read the watchdog's answers to blocks before `k`.
+
+        Raises
+        ------
+        SafetyTrip
+            The watchdog has tripped (names the first cause and the remedy), or its process has gone.
+        """
+        try:
+            messages = self._newer + self._link.drain()
+        except LinkClosed as error:
+            raise _gone() from error
+        self._newer = [message for message in messages if message.get("k", -1) >= k]
+        for message in messages:
+            if message.get("k", -1) < k:
+                self._take(message)
+        if self.state == "tripped":
+            raise SafetyTrip(self.cause or "tripped", place="watchdog", remedy=self.remedy or "")
+
+    def _take(self, message: Message) -> None:
+        kind = message.get("m")
+        if kind == "status":
+            self.state = str(message["state"])
+            self._nonce = int(message["nonce"])
+            self.cause = message.get("cause")
+            self.remedy = message.get("remedy")
+        elif kind == "refused":
+            self.refusal = " ".join(str(message.get(key) or "") for key in ("cause", "remedy")).strip()
+
+    def heartbeat(self, k: int, setpoints: dict[str, Any]) -> None:
+        """Tell the watchdog that the loop has worked on block `k`; the checkpoints start afresh."""
+        mask = int(self._mask)
+        answer = zlib.crc32(f"{self._nonce}:{k}:{mask}:{self._hash8}".encode())
+        try:
+            self._link.send(
+                {"m": "hb", "k": k, "answer": answer, "mask": mask, "limits": self._hash8, "set": setpoints}
+            )
+        except LinkClosed as error:
+            raise _gone() from error
+        self._mask = Checkpoint(0)
+
+    def close(self) -> None:
+        """Leave. Without a disarm before, the watchdog trips."""
+        self._link.close()
+
+
+def _gone() -> SafetyTrip:
+    return SafetyTrip(
+        "the watchdog process has gone; the safety relay has opened.",
+        place="watchdog",
+        remedy="Nothing moves without it. See logs/watchdog.log, then run `rigctl resume`.",
+    )
