@@ -66,10 +66,10 @@ class Plant:
         self._requested_pa = 0.0
         self._relay_closed = False
         self._pending: tuple[NDArray[np.float64], int, bool] | None = None
-        self._sensor = _errors((s := settings.sensors).torque, s.pressure, s.speed, SensorError(
-            gain=1.0, offset=0.0, noise=settings.pyrometer.noise_k))  # fmt: skip
-        own = settings.safety_sensors
-        self._safety_sensor = _errors(own.pressure, own.speed, own.torque, own.temperature)
+        own, of = settings.safety_sensors, settings.sensors
+        pyrometer = SensorError(gain=1.0, offset=0.0, noise=settings.pyrometer.noise_k)
+        self._sensor = _errors(_TO_RIG, of.torque, of.pressure, of.speed, pyrometer)
+        self._safety_sensor = _errors(_SAFETY_TO_RIG, own.pressure, own.speed, own.torque, own.temperature)
         self._draw_scatter()
 
     def compile(self) -> None:
@@ -203,31 +203,32 @@ class Plant:
         self._state["scatter_used"] = 0
 
     def _measured(self, true: NDArray[np.float64]) -> dict[str, NDArray[np.float32]]:
-        """Readings of the controller's sensors from true values (SI), (4, n): torque, pressure, speed, temperature."""
-        noise = self._sensor_random.standard_normal((true.shape[1], 4), dtype=np.float32).T
-        true *= (_TO_RIG * self._sensor[0])[:, None]
-        true += (_ZERO * self._sensor[0] + self._sensor[1])[:, None]
-        readings = (true + noise * self._sensor[2][:, None]).astype(np.float32)
+        """Readings of the controller's sensors from true values in SI, (4, n): order of `_SLOW`."""
+        noise = self._sensor_random.standard_normal((true.shape[1], 4), dtype=np.float32)
+        readings = np.empty(true.shape, np.float32)
+        slow_physics.read_sensors(true, noise, self._sensor, 0.0, readings)
         return dict(zip(_SLOW, readings, strict=True))
 
     def _safety_readings(self, true: NDArray[np.float64]) -> dict[str, list[float]]:
-        """Readings of the watchdog's own sensors from true values (SI), (4, n): pressure, speed, torque, temperature."""
-        gain, offset, sigma = self._safety_sensor
-        noise = self._safety_random.standard_normal((true.shape[1], 4)).T
-        rig = true * _SAFETY_TO_RIG[:, None] + _ZERO[:, None]
-        readings = np.round(rig * gain[:, None] + offset[:, None] + noise * sigma[:, None], 3)
+        """Readings of the watchdog's own sensors from true values in SI, (4, n): p, n, M, T."""
+        noise = self._safety_random.standard_normal((true.shape[1], 4), dtype=np.float32)
+        readings = np.empty(true.shape)
+        slow_physics.read_sensors(true, noise, self._safety_sensor, 1000.0, readings)
         return dict(zip("pnMT", readings.tolist(), strict=True))
 
 
-_TO_RIG = np.array([1.0, 1.0 / PA_PER_BAR, 1.0 / RAD_S_PER_RPM, 1.0])
-_SAFETY_TO_RIG = np.array([1.0 / PA_PER_BAR, 1.0 / RAD_S_PER_RPM, 1.0, 1.0])
-_ZERO = np.array([0.0, 0.0, 0.0, -KELVIN_AT_0_DEGC])
+#: from SI to rig units, (scale, zero), in the order of `_SLOW` and of the safety readings
+_TO_RIG = ((1.0, 0.0), (1.0 / PA_PER_BAR, 0.0), (1.0 / RAD_S_PER_RPM, 0.0), (1.0, -KELVIN_AT_0_DEGC))
+_SAFETY_TO_RIG = (_TO_RIG[1], _TO_RIG[2], _TO_RIG[0], _TO_RIG[3])
 
 
-def _errors(*sensors: SensorError) -> tuple[NDArray[np.float64], ...]:
-    """Gains, offsets and noise of some sensors, (n,) each."""
-    columns = zip(*((sensor.gain, sensor.offset, sensor.noise) for sensor in sensors), strict=True)
-    return tuple(np.array(column) for column in columns)
+def _errors(to_rig: tuple[tuple[float, float], ...], *sensors: SensorError) -> NDArray[np.float64]:
+    """Scale, offset (rig units) and noise of four sensors that read SI values, (3, 4)."""
+    columns = [
+        (scale * sensor.gain, zero * sensor.gain + sensor.offset, sensor.noise)
+        for (scale, zero), sensor in zip(to_rig, sensors, strict=True)
+    ]
+    return np.array(columns).T.copy()
 
 
 def _channels(settings: PlantSettings) -> tuple[ChannelSpec, ...]:

@@ -294,6 +294,21 @@ def advance(
 
 
 @njit(cache=True, nogil=True)
+def read_sensors(true: Any, noise: Any, errors: Any, digits: float, readings: Any) -> None:
+    """Readings of four sensors: readings (4, n) = errors[0] true + errors[1] + errors[2] noise.
+
+    true (4, n); noise (n, 4); errors (3, 4): scale, offset, standard deviation; rounded to 1/digits if digits > 0.
+    """
+    for j in range(4):
+        scale, offset, sigma = errors[0, j], errors[1, j], errors[2, j]
+        for i in range(true.shape[1]):
+            value = scale * true[j, i] + offset + sigma * noise[i, j]
+            if digits > 0.0:
+                value = round(value * digits) / digits
+            readings[j, i] = value
+
+
+@njit(cache=True, nogil=True)
 def map_grid(constants: Any, pressure_pa: Any, temperature_k: Any, mu: Any, slope: Any) -> None:
     """Friction map on a grid: mu and slope, (n_pressures, n_temperatures), are filled."""
     c = constants[0]

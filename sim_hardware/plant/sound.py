@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from rigctl.core.errors import ConfigError
-from rigctl.core.units import M3_S_PER_M3_H, REFERENCE_PRESSURE_PA
+from rigctl.core.units import M3_S_PER_M3_H, PA_PER_BAR, REFERENCE_PRESSURE_PA
 from sim_hardware.brake_model import Brake, SquealIntegrator
 from sim_hardware.plant.layout import TRACK
 from sim_hardware.plant.settings import BackgroundSettings, PlantSettings
@@ -31,6 +31,9 @@ _MIN_SLIP_M_S = 0.01
 _FORCE, _MU, _SLIP, _SLOPE, _AIR_RATE, _OMEGA, _MOTOR_TORQUE, _FLOW, _ANGLE = range(len(TRACK))
 _BACKGROUND, _VENTILATOR, _HISS = range(3)
 _N_LINES = 4
+#: all noise is drawn uniform, which is quick; filters and resonances make it Gaussian. rms 1 needs a width of
+_UNIFORM = math.sqrt(12.0)
+_INAUDIBLE_PA = 1e-5
 
 Array = NDArray[np.float64]
 
@@ -65,6 +68,11 @@ class Sound:
         self._background = background
         self._random = random
         self._flow_max = settings.thermal.ventilator_max_m3_h * M3_S_PER_M3_H
+        self._ventilator = (_rms_pa(background.ventilator_db), _amplitude_pa(background.ventilator_blade_db))
+        self._motor_lines = np.array([_amplitude_pa(level_db) for level_db in background.motor_lines_db])
+        self._hiss = _rms_pa(background.hiss_db) / (background.hiss_rate_bar_per_s * PA_PER_BAR)
+        self._motor_step = 2.0 * math.pi * background.motor_line_hz / SOUND_HZ
+        self._blade_step = 2.0 * math.pi * background.ventilator_blade_hz / (SOUND_HZ * self._flow_max)
         self._integrator = SquealIntegrator(
             brake, output_hz=float(SOUND_HZ), outputs=tuple(f"{body}.y" for body in radiation.areas_m2)
         )
@@ -80,8 +88,9 @@ class Sound:
         self._phasors = np.zeros((_N_LINES, 2))
         self._phasors[:, 0] = 1.0
         self._counts_per_pa = 32768.0 / settings.microphone.full_scale_pa
-        self._self_noise = _rms_pa(settings.microphone.self_noise_db)
-        self._floor = math.hypot(_rms_pa(background.background_db), self._self_noise)
+        self._floor = math.hypot(
+            _rms_pa(background.background_db), _rms_pa(settings.microphone.self_noise_db)
+        )
 
     def forget(self) -> None:
         """The brake's motion dies away: nothing was rendered for a while."""
@@ -116,22 +125,19 @@ class Sound:
         n = len(out)
         motion = self._brake(start, end, n)
         first, last = self._levels(start, drive_on), self._levels(end, drive_on)
-        hiss = (
-            _rms_pa(self._background.hiss_db)
-            * float(air_rate.mean())
-            / (self._background.hiss_rate_bar_per_s * 1e5)
-        )
-        first[_HISS] = last[_HISS] = hiss if hiss > 0.1 * self._self_noise else 0.0
-        white = np.zeros((3, n), np.float32)
+        hiss = self._hiss * float(air_rate.mean())
+        first[_HISS] = last[_HISS] = hiss if hiss > _INAUDIBLE_PA else 0.0
+        white = np.empty((3, n), np.float32)
         for source in (_BACKGROUND, _VENTILATOR, _HISS):
             if first[source] + last[source] > 0.0:
-                self._random.standard_normal(out=white[source], dtype=np.float32)
-        turn = np.exp(2j * math.pi * self._line_hz(0.5 * (start[_FLOW] + end[_FLOW])) / SOUND_HZ)
+                self._random.random(out=white[source], dtype=np.float32)
+        blade = self._blade_step * 0.5 * (start[_FLOW] + end[_FLOW])
+        steps = (self._motor_step, 2.0 * self._motor_step, 3.0 * self._motor_step, blade)
         shaft = 0.5 * (start[_OMEGA] + end[_OMEGA]) / SOUND_HZ
+        modulation = self._background.shaft_modulation if shaft > 0.0 else 0.0
         _mix(
-            motion, self._weights, white, self._filters, self._memory, self._phasors, turn.real.copy(), turn.imag.copy(),
-            first, last, start[_ANGLE], shaft, self._radiation.modulation,
-            self._background.shaft_modulation if shaft > 0.0 else 0.0, self._counts_per_pa, out,
+            motion, self._weights, white, self._filters, self._memory, self._phasors, steps, first, last,
+            start[_ANGLE], shaft, self._radiation.modulation, modulation, self._counts_per_pa, out,
         )  # fmt: skip
 
     def _brake(self, start: Array, end: Array, n: int) -> Array:
@@ -141,8 +147,9 @@ class Sound:
             self._integrator.reset()
             return np.zeros((0, len(self._weights)))
         rough = self._radiation.roughness_n_per_sqrt_n * math.sqrt(0.5 * (force[0] + force[1]))
-        excitation = self._random.standard_normal((n, self._integrator.n_pads))
-        excitation *= rough
+        excitation = self._random.random((n, self._integrator.n_pads))
+        excitation -= 0.5
+        excitation *= _UNIFORM * rough
         return self._integrator.advance(
             n,
             normal_force_n=force,
@@ -153,30 +160,28 @@ class Sound:
             excitation_n=excitation,
         )
 
-    def _line_hz(self, flow_m3_s: float) -> Array:
-        motor = self._background.motor_line_hz
-        return np.array(
-            [motor, 2 * motor, 3 * motor, self._background.ventilator_blade_hz * flow_m3_s / self._flow_max]
-        )
-
     def _levels(self, row: Array, drive_on: bool) -> Array:
-        """Rms sound pressure of background, ventilator, hiss (set by the caller) and amplitudes of the lines, Pa."""
+        """Rms sound pressure of background, ventilator, hiss (set by the caller), amplitudes of the lines, Pa."""
         b = self._background
-        fan = (max(float(row[_FLOW]), 0.0) / self._flow_max) ** b.ventilator_level_exponent
         levels = np.zeros(3 + _N_LINES)
         levels[_BACKGROUND] = self._floor
-        if fan > 1e-4:
-            levels[_VENTILATOR] = _rms_pa(b.ventilator_db) * fan
-            levels[3 + _N_LINES - 1] = math.sqrt(2.0) * _rms_pa(b.ventilator_blade_db) * fan
+        flow = float(row[_FLOW])
+        if flow > 0.02 * self._flow_max:
+            fan = (flow / self._flow_max) ** b.ventilator_level_exponent
+            levels[_VENTILATOR] = self._ventilator[0] * fan
+            levels[3 + _N_LINES - 1] = self._ventilator[1] * fan
         if drive_on:
             load_db = b.motor_line_db_per_knm * abs(float(row[_MOTOR_TORQUE])) / 1000.0
-            for line, level_db in enumerate(b.motor_lines_db):
-                levels[3 + line] = math.sqrt(2.0) * _rms_pa(level_db + load_db)
+            levels[3 : 3 + len(self._motor_lines)] = self._motor_lines * 10.0 ** (load_db / 20.0)
         return levels
 
 
 def _rms_pa(level_db: float) -> float:
     return REFERENCE_PRESSURE_PA * 10.0 ** (level_db / 20.0)
+
+
+def _amplitude_pa(level_db: float) -> float:
+    return math.sqrt(2.0) * _rms_pa(level_db)
 
 
 def _filters(b: BackgroundSettings) -> Array:
@@ -194,7 +199,7 @@ def _filters(b: BackgroundSettings) -> Array:
         response = lfilter([1.0 - low], [1.0, -low], impulse)
         if high > 0.0:
             response = lfilter([1.0, -1.0], [1.0, -high], response)
-        rows.append((low, high, 1.0 / math.sqrt(float(np.sum(response**2)))))
+        rows.append((low, high, _UNIFORM / math.sqrt(float(np.sum(response**2)))))
     return np.array(rows)
 
 
@@ -206,8 +211,7 @@ def _mix(
     filters: Any,
     memory: Any,
     phasors: Any,
-    turn_re: Any,
-    turn_im: Any,
+    steps: Any,
     first: Any,
     last: Any,
     angle: float,
@@ -219,8 +223,8 @@ def _mix(
 ) -> None:
     """Sum all sources and convert to counts.
 
-    motion (n or 0, bodies) m/s2; weights (bodies,) Pa per m/s2; white (3, n); filters (3, 3); memory (4, 2) and
-    phasors (4, 2), changed; first, last (7,) levels at start and end, linear between; out (n,) int16, filled.
+    motion (n or 0, bodies) m/s2; weights (bodies,) Pa per m/s2; white (3, n) uniform in 0 to 1; filters (3, 3); memory (4, 2) and
+    phasors (4, 2), changed; steps (4,) rad per sample; first, last (7,) levels at start and end, linear between; out (n,) int16, filled.
     """
     n = out.shape[0]
     pressure = np.zeros(n)
@@ -246,7 +250,7 @@ def _mix(
         modulation = shaft_modulation if source == 0 else 0.0
         for i in range(n):
             before = slow
-            slow = low * slow + (1.0 - low) * white[source, i]
+            slow = low * slow + (1.0 - low) * (white[source, i] - 0.5)
             value = slow
             if high > 0.0:
                 passed = high * passed + slow - before
@@ -258,7 +262,7 @@ def _mix(
         if level == 0.0 and rise == 0.0:
             continue
         re, im = phasors[line, 0], phasors[line, 1]
-        c, s = turn_re[line], turn_im[line]
+        c, s = math.cos(steps[line]), math.sin(steps[line])
         for i in range(n):
             pressure[i] += im * (level + rise * i)
             re, im = re * c - im * s, re * s + im * c
