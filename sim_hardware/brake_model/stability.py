@@ -18,6 +18,8 @@ PA_PER_BAR = 1e5
 
 #: relative imaginary part below which an eigenvalue counts as real
 _REAL = 1e-9
+#: width to which an onset is refined, relative to the range
+_ONSET_TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ def onset_pressure(
 ) -> Onset | None:
     """Return the lowest pressure (bar) at which a pair becomes unstable, or None where stable through the range.
 
-    The range from 0 is scanned in `steps` steps and the first change of sign refined (Brent).
+    The range from 0 is scanned in `steps` steps and the first change of sign refined.
     """
     return _first_crossing(
         lambda pressure: brake.state_matrix(mu, slope_s_m, pressure * PA_PER_BAR), pressure_max_bar, steps
@@ -155,15 +157,13 @@ def _first_crossing(matrix: Callable[[float], NDArray[np.float64]], top: float, 
     if unstable.size == 0:
         return None
     first = int(unstable[0])
-    value = 0.0
-    if first > 0:
-        from scipy.optimize import brentq  # noqa: PLC0415 (scipy only when an onset is refined)
-
-        value = float(
-            brentq(
-                lambda x: float(np.linalg.eigvals(matrix(x)).real.max()), grid[first - 1], grid[first], xtol=1e-10 * top
-            )
-        )
+    below, value = float(grid[max(first - 1, 0)]), float(grid[first])
+    while value - below > _ONSET_TOLERANCE * top:  # bisection: safe where the leading pair changes
+        middle = 0.5 * (below + value)
+        if np.linalg.eigvals(matrix(middle)).real.max() > 0.0:
+            value = middle
+        else:
+            below = middle
     at_onset = np.linalg.eigvals(matrix(value))
     critical = at_onset[int(np.argmax(at_onset.real))]
     return Onset(value, abs(float(critical.imag)) / (2.0 * math.pi))
