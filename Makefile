@@ -1,0 +1,52 @@
+# Set-up and main jobs of rigctl on a Debian or Ubuntu with Python 3.11 to 3.13 (with its venv module) and make.
+#
+#   make run     environment, installation, then the squeal matrix of the paper on the simulated rig
+#   make test    environment with the tools for development, then linters, types and all tests
+#   make lock    resolve the dependencies again (after a change in pyproject.toml)
+
+.DELETE_ON_ERROR:
+.PHONY: help run test lint types lock clean
+
+VENV := .venv
+BIN := $(VENV)/bin
+PROGRAM ?= configs/programs/squeal_matrix.toml
+RUN_ARGS ?=
+
+help:
+	@sed -n 's/^#   //p' Makefile
+
+run: $(VENV)/.run
+	$(BIN)/rigctl run $(PROGRAM) $(RUN_ARGS)
+
+test: lint types
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+
+types: $(VENV)/.dev
+	$(BIN)/basedpyright --level error
+
+# --no-deps: the locks hold every package with its hash; nothing else is taken.
+$(VENV)/.run: requirements.lock pyproject.toml | $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(VENV)/.dev: requirements-dev.lock $(VENV)/.run
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-dev.lock
+	@touch $@
+
+$(VENV):
+	@sh .ci/make-venv $(VENV)
+
+lock: $(VENV)/.dev
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+		--custom-compile-command "make lock" --group build -o requirements.lock pyproject.toml
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+		--custom-compile-command "make lock" --group build --group dev -c requirements.lock -o requirements-dev.lock pyproject.toml
+
+clean:
+	rm -rf $(VENV) build dist .pytest_cache .hypothesis .ruff_cache

@@ -1,0 +1,83 @@
+"""The sample ring: what is written is read, and a reader that was too slow is told so."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rigctl.core.blocks import Block
+from rigctl.core.channels import ChannelData, ChannelSpec
+from rigctl.core.errors import DeviceError, RecordingError
+from rigctl.core.ring import SampleRing
+
+SPECS = [
+    ChannelSpec("microphone", "Pa", 400.0, "int16", scale=0.5, offset=1.0),
+    ChannelSpec("pressure", "bar", 100.0),
+]
+
+
+@settings(max_examples=60, deadline=None)
+@given(sizes=st.lists(st.integers(0, 200), min_size=1, max_size=40))
+def test_any_sequence_of_writes_reads_back(tmp_path_factory: pytest.TempPathFactory, sizes: list[int]):
+    path = tmp_path_factory.mktemp("ring") / "ring"
+    writer = SampleRing.create(path, SPECS, seconds=1.0)
+    reader = SampleRing.attach(path, 1.0)
+    everything = np.arange(sum(sizes), dtype=np.int16)
+    at = 0
+    for size in sizes:
+        start, stop = writer.write("microphone", everything[at : at + size])
+        assert (start, stop) == (at, at + size)
+        np.testing.assert_array_equal(reader.read("microphone", start, stop), everything[start:stop])
+        at += size
+        oldest = max(0, at - writer.capacity("microphone"))
+        np.testing.assert_array_equal(reader.read("microphone", oldest, at), everything[oldest:at])
+    writer.close()
+    reader.close()
+    path.unlink()
+
+
+def test_slow_reader_is_told(tmp_path: Path):
+    ring = SampleRing.create(tmp_path / "ring", SPECS, seconds=1.0)
+    for _ in range(3):
+        ring.write("pressure", np.zeros(60, np.float32))
+    with pytest.raises(RecordingError, match="overwritten"):
+        ring.read("pressure", 0, 10)
+
+
+def test_reader_waits_no_longer_than_it_says(tmp_path: Path):
+    ring = SampleRing.create(tmp_path / "ring", SPECS, seconds=1.0)
+    with pytest.raises(RecordingError, match="has not arrived"):
+        ring.read("pressure", 0, 10, timeout_s=0.02)
+    with pytest.raises(RecordingError, match="has not arrived"):
+        ring.read("pressure", 0, 10, keep_waiting=lambda: False)
+
+
+def test_ring_keeps_the_channel_specs_for_other_processes(tmp_path: Path):
+    SampleRing.create(tmp_path / "ring", SPECS)
+    assert list(SampleRing.attach(tmp_path / "ring", 1.0).specs.values()) == SPECS
+    with pytest.raises(DeviceError, match="has not made"):
+        SampleRing.attach(tmp_path / "other", 0.02)
+    with pytest.raises(ValueError, match="do not fit"):
+        SampleRing.create(tmp_path / "small", SPECS, seconds=0.1).write("pressure", np.zeros(100, np.float32))
+
+
+def test_block_gives_physical_means_and_raw_samples(tmp_path: Path):
+    ring = SampleRing.create(tmp_path / "ring", SPECS)
+    ranges = {"microphone": ring.write("microphone", np.array([1, 2, 3], np.int16)), "pressure": (0, 0)}
+    block = Block(7, 1_500_000_000, 50_000_000, ranges, ring)
+    assert block.t_s == 1.5
+    assert block.end_s == pytest.approx(1.55)
+    np.testing.assert_array_equal(block.samples("microphone"), [1, 2, 3])
+    assert block.mean("microphone") == pytest.approx(2.0)  # counts 2 * 0.5 + 1
+    assert np.isnan(block.mean("pressure"))
+
+
+def test_channel_data_scales_and_keeps_time():
+    data = ChannelData(SPECS[0], -0.5, np.array([0, 2], np.int16))
+    np.testing.assert_allclose(data.physical(), [1.0, 2.0])
+    np.testing.assert_allclose(data.time_s(), [-0.5, -0.4975])
+    assert SPECS[0].is_counts
+    assert not SPECS[1].is_counts
+    assert ChannelSpec(**SPECS[0].to_mapping()) == SPECS[0]
