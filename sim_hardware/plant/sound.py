@@ -1,6 +1,6 @@
 """Sound at the microphone: what the brake radiates, what the rig adds, and the converter.
 
-Job: roughness excitation and time integration of the brake over one block, monopole radiation of its bodies, motor
+Job: roughness excitation and time integration of the brake over one block, monopole radiation of its surfaces, motor
 lines, shaft, ventilator and valve noise, 16-bit conversion with clipping. Levels are dB(Z) re 20 uPa.
 NOT its job: slow physics; whether the brake squeals (that is `sim_hardware.brake_model`, from pressure, friction and
 slope at this moment); evaluation of the sound.
@@ -50,19 +50,19 @@ class Sound:
     Raises
     ------
     ConfigError
-        a radiating body that the brake does not have
+        a radiating surface that does not belong to the brake
     """
 
     def __init__(self, settings: PlantSettings, brake: Brake, random: np.random.Generator) -> None:
         radiation, background = settings.radiation, settings.background
-        bodies = {name.split(".")[0] for name in brake.freedoms if name.endswith(".y")}
-        for body in radiation.areas_m2:
-            if body not in bodies:
+        radiating = tuple(radiation.areas_m2)
+        for freedom in radiating:
+            if freedom not in brake.freedoms or freedom.endswith(".phi"):
                 raise ConfigError(
-                    "the brake has no such body that moves along y.",
+                    "the brake has no such translation.",
                     place=f"{settings.name}: radiation.areas_m2",
-                    value=body,
-                    remedy=f"Use one of: {', '.join(sorted(bodies))}.",
+                    value=freedom,
+                    remedy=f"Use some of: {', '.join(f for f in brake.freedoms if not f.endswith('.phi'))}.",
                 )
         self._radiation = radiation
         self._background = background
@@ -74,7 +74,7 @@ class Sound:
         self._motor_step = 2.0 * math.pi * background.motor_line_hz / SOUND_HZ
         self._blade_step = 2.0 * math.pi * background.ventilator_blade_hz / (SOUND_HZ * self._flow_max)
         self._integrator = SquealIntegrator(
-            brake, output_hz=float(SOUND_HZ), outputs=tuple(f"{body}.y" for body in radiation.areas_m2)
+            brake, output_hz=float(SOUND_HZ), outputs=radiating
         )
         # monopole: p = rho / (4 pi r) S dv/dt
         monopole = (
@@ -141,7 +141,7 @@ class Sound:
         )  # fmt: skip
 
     def _brake(self, start: Array, end: Array, n: int) -> Array:
-        """Accelerations of the radiating bodies, (n, bodies) m/s2; (0, bodies) while nothing rubs."""
+        """Accelerations of the radiating surfaces, (n, surfaces) m/s2; (0, surfaces) while nothing rubs."""
         force, slip = (float(start[_FORCE]), float(end[_FORCE])), (float(start[_SLIP]), float(end[_SLIP]))
         if max(force) <= 0.0 or min(slip) < _MIN_SLIP_M_S:
             self._integrator.reset()
@@ -223,7 +223,7 @@ def _mix(
 ) -> None:
     """Sum all sources and convert to counts.
 
-    motion (n or 0, bodies) m/s2; weights (bodies,) Pa per m/s2; white (3, n) uniform in 0 to 1; filters (3, 3); memory (4, 2) and
+    motion (n or 0, surfaces) m/s2; weights (surfaces,) Pa per m/s2; white (3, n) uniform in 0 to 1; filters (3, 3); memory (4, 2) and
     phasors (4, 2), changed; steps (4,) rad per sample; first, last (7,) levels at start and end, linear between; out (n,) int16, filled.
     """
     n = out.shape[0]
