@@ -29,10 +29,14 @@ from rigctl.analysis.style import (
     ORANGE,
     PALE,
     PURPLE,
+    TITLE,
     VERMILION,
     grid,
     new_figure,
 )
+
+_MAIN_BAND = 0.1
+"""Events within this share of the median frequency belong to the main squeal."""
 
 _ROLE_COLOURS = (BLUE, GREEN, PURPLE, VERMILION)
 
@@ -45,7 +49,7 @@ def pressure_frequency(table: CampaignTable, prediction: Prediction | None) -> F
     events = table.squeals()
     figure = new_figure(8.0, 5.6)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3.1, 1.0))
-    figure.subplots_adjust(left=0.085, right=0.895, top=0.94, bottom=0.085, hspace=0.1)
+    figure.subplots_adjust(left=0.085, right=0.895, top=0.88, bottom=0.085, hspace=0.1)
     x_max = max(row.pressure_bar for row in rows)
     if prediction is not None:
         x_max = max(x_max, prediction.onset_bar)
@@ -64,13 +68,14 @@ def pressure_frequency(table: CampaignTable, prediction: Prediction | None) -> F
     frequencies = [e.frequency_hz for e in events] + ([prediction.frequency_hz] if prediction else [])
     top.set_ylim(1.0, max(4.0, 1.12 * max(frequencies, default=0.0) / 1000))
     top.set_ylabel("frequency [kHz]")
-    top.set_title("Squeal over brake pressure")
+    figure.suptitle("Squeal over brake pressure", x=0.085, y=0.975, **TITLE)
     grid(top)
     if not events:
         top.text(0.5, 0.55, "no squeal found", transform=top.transAxes, ha="center", color=GREY, fontsize=13)
     if handles:
-        top.legend(handles=handles, loc="upper left")
-    _level_bar(figure, (0.915, 0.37, 0.018, 0.57))
+        place = (0.085, 0.935)
+        figure.legend(handles=handles, loc="upper left", ncols=2, bbox_to_anchor=place, borderaxespad=0)
+    _level_bar(figure, (0.915, 0.35, 0.018, 0.53))
     _occurrence_bars(bottom, rows)
     return figure
 
@@ -128,7 +133,7 @@ def _occurrence_bars(axes: Axes, rows: tuple[occurrence.PressureRow, ...]) -> No
     axes.set_ylim(0, 1.2)
     axes.set_yticks([0, 0.5, 1.0])
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_ylabel("brakings\nthat squeal")
+    axes.set_ylabel("squealing")
     axes.set_xlabel("brake pressure [bar]  (dots: at the loudest moment; bars: set-point)")
 
 
@@ -146,7 +151,7 @@ def pressure_temperature(table: CampaignTable, prediction: Prediction | None) ->
         return None
     figure = new_figure(8.0, 4.9)
     axes = figure.subplots()
-    figure.subplots_adjust(left=0.085, right=0.895, top=0.86, bottom=0.11)
+    figure.subplots_adjust(left=0.085, right=0.895, top=0.85, bottom=0.105)
     x, y = _edges(cells.pressures_bar), _edges(cells.temperatures_degc)
     quiet = np.where((cells.brakings > 0) & (cells.squealing == 0), 1.0, np.nan)
     axes.pcolormesh(x, y, quiet, cmap=ListedColormap([PALE]), edgecolors="white", linewidth=1.2)
@@ -172,12 +177,13 @@ def pressure_temperature(table: CampaignTable, prediction: Prediction | None) ->
         look = {"color": GREEN, "lw": 1.8, "ls": (0, (5, 2))}
         axes.axvline(prediction.onset_bar, **look)
         handles.append(Line2D([], [], label=f"predicted onset {prediction.onset_bar:.1f} bar", **look))
-    figure.legend(handles=handles, loc="upper right", ncols=3, bbox_to_anchor=(0.9, 0.955), borderaxespad=0)
-    axes.set_title("Loudest squeal" if not many else "Squealing / all brakings", pad=24)
+    figure.legend(handles=handles, loc="upper left", ncols=3, bbox_to_anchor=(0.085, 0.92), borderaxespad=0)
+    title = "Squealing / all brakings" if many else "Loudest squeal per set-point"
+    figure.suptitle(title, x=0.085, y=0.975, **TITLE)
     axes.set_xlabel("brake pressure, set-point [bar]")
     axes.set_ylabel("disc temperature, set-point [°C]")
     _ticks_at(axes, cells.pressures_bar, cells.temperatures_degc)
-    _level_bar(figure, (0.915, 0.11, 0.018, 0.75))
+    _level_bar(figure, (0.915, 0.105, 0.018, 0.745))
     return figure
 
 
@@ -203,7 +209,7 @@ def friction_over_pressure_temperature(table: CampaignTable) -> Figure | None:
         return None
     figure = new_figure(9.6, 4.3)
     left, right = figure.subplots(1, 2, width_ratios=(1.12, 1.0))
-    figure.subplots_adjust(left=0.07, right=0.985, top=0.9, bottom=0.125, wspace=0.26)
+    figure.subplots_adjust(left=0.07, right=0.985, top=0.9, bottom=0.125, wspace=0.34)
     x, y = _edges(cells.pressures_bar), _edges(cells.temperatures_degc)
     mesh = left.pcolormesh(
         x, y, np.ma.masked_invalid(cells.mu), cmap="cividis", edgecolors="white", linewidth=0.8
@@ -211,7 +217,7 @@ def friction_over_pressure_temperature(table: CampaignTable) -> Figure | None:
     bar = figure.colorbar(mesh, ax=left, pad=0.02, fraction=0.05)
     bar.set_label("mean µ [–]")
     bar.outline.set_visible(False)  # type: ignore[operator]
-    left.set_title("Coefficient of friction")
+    left.set_title("Coefficient of friction per set-point")
     left.set_xlabel("brake pressure, set-point [bar]")
     left.set_ylabel("disc temperature, set-point [°C]")
     _ticks_at(left, cells.pressures_bar, cells.temperatures_degc)
@@ -226,7 +232,7 @@ def friction_over_pressure_temperature(table: CampaignTable) -> Figure | None:
         )
     right.set_xlabel("disc temperature, set-point [°C]")
     right.set_ylabel("mean µ [–]")
-    right.set_title("over temperature, per pressure")
+    right.set_title("Over temperature, for some pressures")
     right.legend(ncols=2)
     right.margins(y=0.12)
     grid(right)
@@ -299,7 +305,7 @@ def level_distribution(table: CampaignTable) -> Figure | None:
         return None
     figure = new_figure(9.6, 3.6)
     left, right = figure.subplots(1, 2)
-    figure.subplots_adjust(left=0.065, right=0.985, top=0.88, bottom=0.14, wspace=0.2)
+    figure.subplots_adjust(left=0.065, right=0.98, top=0.88, bottom=0.14, wspace=0.2)
     low, high = 5 * np.floor(min(60.0, levels.min()) / 5), max(100.0, 5 * np.ceil(levels.max() / 5))
     bins = np.arange(low, high + 2.5, 2.5)
     _, _, patches = left.hist(levels, bins=bins.tolist(), edgecolor="white")
@@ -323,9 +329,9 @@ def level_distribution(table: CampaignTable) -> Figure | None:
             right.annotate(
                 f"{share:.0%}", (threshold, share), xytext=(5, 4), textcoords="offset points", fontsize=8
             )
-    right.set_xlim(low, high)
+    right.set_xlim(low - 0.02 * (high - low), high)
     right.set_ylim(0, max(0.1, 1.2 * above.max()))
-    right.yaxis.set_major_formatter(PercentFormatter(1.0))
+    right.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
     right.set_xlabel("level L [dB re 20 µPa]")
     right.set_title(f"Share of all {len(base)} brakings that reach L")
     grid(right)
@@ -358,5 +364,12 @@ def frequency_over_temperature(table: CampaignTable) -> Figure | None:
     axes.set_title("Squeal frequency over disc temperature")
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.margins(x=0.04, y=0.15)
+    middle = float(np.median(frequency))
+    outside = np.abs(frequency / middle - 1.0) > _MAIN_BAND
+    if 0 < np.count_nonzero(outside) < frequency.size / 2:
+        near = frequency[~outside]
+        room = max(20.0, 0.2 * float(np.ptp(near)))
+        axes.set_ylim(near.min() - room, near.max() + room)
+        axes.set_title(f"Squeal frequency over disc temperature ({np.count_nonzero(outside)} events outside)")
     grid(axes)
     return figure

@@ -132,8 +132,8 @@ def _plots(table: CampaignTable, campaign_dir: Path, prediction: Prediction | No
         _Plot(
             "squeal_pressure_temperature",
             "squeal",
-            "Where it squeals: one cell per set-point of pressure and temperature; the number is the level in "
-            "dB of the loudest squeal, or squealing / all brakings where a set-point was repeated.",
+            "Where it squeals: one cell per set-point of pressure and temperature; the number is the level "
+            "in dB of the loudest squeal, or squealing / all brakings where a set-point was repeated.",
             lambda: figures.pressure_temperature(table, prediction),
             no_sound,
         ),

@@ -9,14 +9,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rigctl.analysis.campaign_table import BrakingRow, EventRow
-from rigctl.analysis.style import BLUE, INK, PURPLE, VERMILION, new_figure
+from rigctl.analysis.style import BLUE, VERMILION, new_figure
 from rigctl.core.channels import MICROPHONE, PRESSURE, TORQUE
 from rigctl.recording.braking_file import read_braking
 from rigctl.signals.calibration import level_db
 from rigctl.signals.spectra import spectrogram
 
 _FFT_SIZE = 2048
-_DYNAMIC_RANGE_DB = 70.0
+_DYNAMIC_RANGE_DB = 90.0
 _MAX_COLUMNS = 320
 _MAX_ROWS = 260
 
@@ -61,13 +61,14 @@ def braking_spectrogram(path: Path, braking: BrakingRow, events: tuple[EventRow,
     picture = _picture(spec.power[:, : int(top_hz / spec.line_hz) + 1])
     end_s = float(spec.time_s()[-1]) + spec.hop_s / 2
     peak_db = float(picture.max())
+    floor_db = max(peak_db - _DYNAMIC_RANGE_DB, float(np.percentile(picture, 20)))
     image = upper.imshow(
         picture.T,
         origin="lower",
         aspect="auto",
         extent=(float(spec.time_s()[0]) - spec.hop_s / 2, end_s, 0.0, top_hz / 1000),
         cmap="magma",
-        vmin=peak_db - _DYNAMIC_RANGE_DB,
+        vmin=min(floor_db, peak_db - 20.0),
         vmax=peak_db,
         interpolation="nearest",
     )
@@ -100,9 +101,6 @@ def braking_spectrogram(path: Path, braking: BrakingRow, events: tuple[EventRow,
     lower.set_xlabel("time since the first sample [s]")
     lower.set_xlim(0, end_s)
     upper.spines[:].set_visible(False)
-    lower.tick_params(colors=INK)
-    lower.set_facecolor("white")
-    twin.yaxis.label.set_color(VERMILION if TORQUE in channels else PURPLE)
     return figure
 
 

@@ -26,7 +26,9 @@ BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, GREY = (
     "#7A7A7A",
 )
 INK, PALE = "#1C2530", "#E6E9ED"
+TITLE: Any = {"ha": "left", "va": "top", "fontsize": 10.5, "fontweight": "bold"}
 PNG_DPI = 130
+_PNG: Any = {"compress_level": 4}
 
 LEVEL_MAP = LinearSegmentedColormap.from_list(
     "level", [mpl.colormaps["inferno_r"](x) for x in (0.16, 0.3, 0.45, 0.6, 0.75, 0.9)]
@@ -91,7 +93,7 @@ def grid(axes: Axes, which: str = "both") -> None:
 def render(figure: Figure) -> Rendered:
     """PNG and SVG of a figure; the same figure gives the same bytes (no dates, fixed ids)."""
     png, svg = BytesIO(), StringIO()
-    figure.savefig(png, format="png", dpi=PNG_DPI, metadata={"Software": None})
+    figure.savefig(png, format="png", dpi=PNG_DPI, metadata={"Software": None}, pil_kwargs=_PNG)
     figure.savefig(svg, format="svg", metadata={"Date": None})
     width, height = figure.get_size_inches()
     return Rendered(png.getvalue(), svg.getvalue(), float(height / width))

@@ -126,7 +126,8 @@ def _squeal(s: Summary) -> tuple[str, ...]:
 def _comparison(s: Summary) -> tuple[str, ...]:
     if s.predicted_onset_bar is None or s.predicted_frequency_hz is None:
         return ()
-    text = f"Predicted ({s.predicted_by}): {s.predicted_frequency_hz:.0f} Hz from {s.predicted_onset_bar:.1f} bar"
+    predicted = f"{s.predicted_frequency_hz:.0f} Hz from {s.predicted_onset_bar:.1f} bar"
+    text = f"Predicted ({s.predicted_by}): {predicted}"
     if s.onset_bar is None or s.frequency_median_hz is None:
         return (f"{text}; there is no measured squeal to compare it with.",)
     d_bar = s.onset_bar - s.predicted_onset_bar

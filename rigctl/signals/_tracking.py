@@ -39,7 +39,7 @@ def _select(values, n, rank):
 
 
 @numba.njit(cache=True, nogil=True)
-def find_peaks(  # noqa: PLR0917 (numba kernels are called by position)
+def find_peaks(
     power,
     first_frame,
     low,
@@ -132,7 +132,7 @@ def find_peaks(  # noqa: PLR0917 (numba kernels are called by position)
 
 
 @numba.njit(cache=True, nogil=True)
-def track_peaks(frame_of, line, tolerance, tolerance_relative, max_gap, track_of):  # noqa: PLR0917
+def track_peaks(frame_of, line, tolerance, tolerance_relative, max_gap, track_of):
     """Give every peak the number of its track; returns the number of tracks.
 
     A peak joins the nearest free track whose last frequency lies within the tolerance (lines, or a share of

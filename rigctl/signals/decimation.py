@@ -10,14 +10,13 @@ its mirror image. Block and stream add the same products in the same order: thei
 bit.
 """
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import firwin, kaiserord
 
 from rigctl.signals._model import FrozenModel
 
@@ -95,12 +94,13 @@ def design_decimation(factor: int) -> DecimationFilter:
         raise ValueError(f"decimation factor: {factor} is outside 1...1000. Decimate in stages")
     if factor == 1:
         return DecimationFilter(1, np.ones(1), 0.0, None)
-    width = (1.0 - PASS_BAND_SHARE) / factor
-    n_taps, beta = kaiserord(_DESIGN_ATTENUATION_DB, width)
-    n_taps += 1 - n_taps % 2
-    edge = (1.0 + PASS_BAND_SHARE) / 2 / factor
-    window: Any = ("kaiser", beta)  # scipy's stub knows only names
-    taps = np.asarray(firwin(n_taps, edge, window=window), dtype=np.float64)
+    # Kaiser's formulas for attenuation a (dB) and transition width (share of the input's Nyquist frequency)
+    a, width = _DESIGN_ATTENUATION_DB, (1.0 - PASS_BAND_SHARE) / factor
+    half = math.ceil((a - 7.95) / (2.285 * math.pi * width) / 2)
+    cutoff = (1.0 + PASS_BAND_SHARE) / 2 / factor
+    n_taps = 2 * half + 1
+    taps = np.sinc(cutoff * np.arange(-half, half + 1)) * np.kaiser(n_taps, 0.1102 * (a - 8.7))
+    taps /= taps.sum()
     w = np.linspace(0.0, np.pi, 32 * n_taps + 1)
     gain = np.abs(np.fft.rfft(taps, 64 * n_taps))
     pass_band = gain[w <= PASS_BAND_SHARE * np.pi / factor]

@@ -18,7 +18,7 @@ TIME_CONSTANT_S = {"F": 0.125, "S": 1.0}
 
 
 @numba.njit(cache=True, nogil=True)
-def _square_sums(samples, scale, offset, alpha, start, stop):  # noqa: PLR0917 (numba)
+def _square_sums(samples, scale, offset, alpha, start, stop):
     """Sum of squares over [start, stop) and the largest exponential mean square there (state runs from 0)."""
     total = 0.0
     state = 0.0

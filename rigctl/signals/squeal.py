@@ -25,7 +25,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
-from scipy.ndimage import maximum_filter1d
 
 from rigctl.signals._model import FrozenModel
 from rigctl.signals._tracking import find_peaks, track_peaks
@@ -191,9 +190,7 @@ def _tracks(
     first = int(np.count_nonzero(spec.time_s() + spec.frame_s / 2 <= begin_s)) if has_window else 0
     minimum = np.full(n_lines, float(mean_square_pa2(settings.threshold_db - settings.hysteresis_db)))
     if background is not None:
-        raised = maximum_filter1d(background, 2 * _SMEAR_LINES + 1) * 10.0 ** (
-            settings.onset_excess_db / 10.0
-        )
+        raised = _smear(background) * 10.0 ** (settings.onset_excess_db / 10.0)
         minimum = np.maximum(minimum, raised)
     capacity = n_frames * _MAX_PEAKS_PER_FRAME
     frame_of, line = np.empty(capacity, np.int64), np.empty(capacity)
@@ -226,6 +223,12 @@ def _tracks(
     long_enough = np.flatnonzero(np.diff(bounds) >= 2)
     groups = (order[bounds[i] : bounds[i + 1]] for i in long_enough)
     return [_Track(frame_of[g], line[g], strength[g], ratio[g]) for g in groups]
+
+
+def _smear(background: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Largest value within +-3 lines: a background tone may wander a little."""
+    padded = np.pad(background, _SMEAR_LINES, mode="edge")
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * _SMEAR_LINES + 1).max(axis=1)
 
 
 def _is_event(track: _Track, spec: Spectrogram, settings: SquealDetection) -> bool:
