@@ -133,4 +133,4 @@ def _obstacle_of(cause: Cause) -> Obstacle:
 
 
 def _state_of(view: View) -> str:
-    return f"{view.pressure.mean:.2f} bar, {view.speed.mean:.1f} 1/min"
+    return f"{view.pressure.last:.2f} bar, {view.speed.last:.1f} 1/min"

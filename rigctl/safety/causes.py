@@ -85,11 +85,11 @@ CAUSES: Final[dict[str, CauseText]] = {
     "speed_stale": CauseText("K-19", "speed is not measured any more", _SENSOR),
     "torque_stale": CauseText("K-19", "torque is not measured any more", _SENSOR),
     "temperature_stale": CauseText("K-19", "disc temperature is not measured any more", _SENSOR),
-    "pressure_frozen": CauseText("K-18", "brake pressure has been one and the same number for too long", _SENSOR),
-    "speed_frozen": CauseText("K-18", "speed has been one and the same number for too long", _SENSOR),
-    "torque_frozen": CauseText("K-18", "torque has been one and the same number for too long", _SENSOR),
+    "pressure_frozen": CauseText("K-18", "brake pressure has been the same number for too long", _SENSOR),
+    "speed_frozen": CauseText("K-18", "speed has been the same number for too long", _SENSOR),
+    "torque_frozen": CauseText("K-18", "torque has been the same number for too long", _SENSOR),
     "temperature_frozen": CauseText(
-        "K-18", "disc temperature has been one and the same number for too long", _SENSOR
+        "K-18", "disc temperature has been the same number for too long", _SENSOR
     ),
     "samples_gap": CauseText("K-19", "blocks of the safety channel are missing or repeated", _SENSOR),
     "samples_clock": CauseText("K-19", "the safety channel's clock does not fit its blocks", _SENSOR),
@@ -133,6 +133,7 @@ CAUSES: Final[dict[str, CauseText]] = {
     "rig_garbage": CauseText("C13", "the safety channel sends what cannot be read", _SENSOR),
     "limits_changed": CauseText("rule 8", "the limits in memory have changed", _RESTART, False),
     "cycle_incomplete": CauseText("rule 2", "a cycle of the watchdog was not complete", _RESTART, False),
+    "watchdog_error": CauseText("rule 1", "the watchdog has failed", _RESTART, False),
     "journal_failed": CauseText(
         "rule 13", "the journal cannot be written", "Make room on the disk; start the watchdog anew.", False
     ),

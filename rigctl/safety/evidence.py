@@ -76,7 +76,7 @@ class Evidence:
                 payload["samples"] = samples_mapping(item.samples, item.rig_s)
             try:
                 self._journal.write(item.kind, rig_s=item.rig_s, **payload)
-            except (OSError, ValueError) as error:
+            except (OSError, ValueError, TypeError) as error:
                 self.failure = f"{type(error).__name__}: {error}"
             _print(item)
 

@@ -182,6 +182,15 @@ class Guard:
         if fault is not None and self.live:
             self.trip(fault, now_s)
 
+    def on_sample_garbage(self, detail: str, now_s: float) -> None:
+        """The safety channel delivered something that is no sample."""
+        self._good_samples = 0
+        cause = Cause("rig_garbage", detail=detail)
+        if self.live:
+            self.trip(cause, now_s)
+        else:
+            self._refuse("refused_sample", "unreadable", cause.words)
+
     def on_controller_garbage(self, detail: str, now_s: float) -> None:
         """The controller sent something that is no known message."""
         fault = Cause("heartbeat_wrong", detail=detail)
@@ -426,10 +435,10 @@ class Guard:
         if view is None:
             return {}
         return {
-            "pressure_bar": plain_json(view.pressure.mean),
-            "speed_rpm": plain_json(view.speed.mean),
-            "torque_nm": plain_json(view.torque.mean),
-            "temperature_degc": plain_json(view.temperature.mean),
+            "pressure_bar": plain_json(view.pressure.last),
+            "speed_rpm": plain_json(view.speed.last),
+            "torque_nm": plain_json(view.torque.last),
+            "temperature_degc": plain_json(view.temperature.last),
             "relay_closed": view.sample.relay_closed,
             "drive_enabled": view.sample.drive_enabled,
         }

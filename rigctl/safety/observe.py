@@ -26,11 +26,13 @@ class Signal:
         Number of readings, and how many of them are NaN.
     low, high, mean : float
         Over the valid readings; NaN when there is none.
+    last : float
+        The newest reading; NaN when it is invalid or missing.
     run : int
         For how many readings the signal has been one and the same number.
     """
 
-    __slots__ = ("count", "high", "invalid", "low", "mean", "run", "values")
+    __slots__ = ("count", "high", "invalid", "last", "low", "mean", "run", "values")
 
     def __init__(self, values: tuple[float | None, ...], before: Signal | None) -> None:
         count = len(values)
@@ -53,6 +55,7 @@ class Signal:
                 (min(valid), max(valid), sum(valid) / len(valid)) if valid else (nan, nan, nan)
             )
         self.count = count
+        self.last = self.values[-1] if count else nan
         self.low = low
         self.high = high
         if low == high:
@@ -130,6 +133,6 @@ class View:
         return tuple([abs(torque * speed) * _KW_PER_NM_RPM for torque, speed in pairs])
 
     def at_rest(self, pressure_bar: float, speed_rpm: float) -> bool:
-        """Whether mean pressure and mean speed of the block are valid and below both bounds."""
-        pressure, speed = self.pressure.mean, self.speed.mean
+        """Whether the last readings of pressure and speed are valid and below both bounds."""
+        pressure, speed = self.pressure.last, self.speed.last
         return -pressure_bar < pressure < pressure_bar and -speed_rpm < speed < speed_rpm
