@@ -27,6 +27,8 @@ PAST = 3
 DEPTH = PAST + 1
 #: smooth steps in a row before the main step may follow careful ones: as many as its polynomial needs
 CALM = DEPTH
+#: slip, relative to its mean, above which a pad slides forwards for certain (sticking leaves rounding errors)
+_SLIDES = 1e-6
 #: Gauss-Seidel sweeps over the pads, and fixed-point steps for mu(v) within each
 _SWEEPS = 3
 _INNER = 2
@@ -271,10 +273,10 @@ def _careful_and_count(
     """Take a careful step and count how many steps in a row slid forwards at both ends."""
     forwards = True
     for p in range(len(m.present)):
-        forwards = forwards and start[2] - m.contact[2 * p] > 0.0
+        forwards = forwards and start[2] - m.contact[2 * p] > _SLIDES * start[2]
     _careful_step(c, m, excitation, start, end, inverse_saturation)
     for p in range(len(m.present)):
-        forwards = forwards and end[2] - m.contact[2 * p] > 0.0
+        forwards = forwards and end[2] - m.contact[2 * p] > _SLIDES * end[2]
     m.flags[0] = m.flags[0] + 1.0 if forwards else 0.0
     m.flags[1] = SOLVED
 
@@ -307,7 +309,7 @@ def advance_general(
                     value += c.ahead_history[row, d, q] * m.history[d - 1, q]
             ahead[row] = value
             if row % 2 == 0:
-                forwards = forwards and end[2] - value > 0.0
+                forwards = forwards and end[2] - value > _SLIDES * end[2]
         if not forwards:
             _careful_and_count(c, m, push, start, end, inverse_saturation)
             continue
@@ -373,6 +375,7 @@ def advance_pair(
     k_step = (operation[3, 1] - k) / steps
     share_a, share_b, mu_ref = c.share[0], c.share[1], c.mu_ref
     h, r = c.ahead_history, c.ahead_hold
+    oh, od = c.output_history, c.output_direct
     zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
     a1, a2, a3 = m.history[0, 0], m.history[1, 0], m.history[2, 0]
     b1, b2, b3 = m.history[0, 1], m.history[1, 1], m.history[2, 1]
@@ -398,7 +401,6 @@ def advance_pair(
                 zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
             if sub == 0:
                 for o in range(n_outputs):
-                    oh, od = c.output_history, c.output_direct
                     late_a = oh[o, 0, 0] * ga + oh[o, 1, 0] * a1 + oh[o, 2, 0] * a2 + oh[o, 3, 0] * a3
                     late_b = oh[o, 0, 1] * gb + oh[o, 1, 1] * b1 + oh[o, 2, 1] * b2 + oh[o, 3, 1] * b3
                     now = od[o, 0] * (ga + ea) + od[o, 1] * (gb + eb)
@@ -417,7 +419,7 @@ def advance_pair(
             next_db = p2 + (h[2, 0, 0] * ga + h[2, 0, 1] * gb)
             next_nb = p3 + (h[3, 0, 0] * ga + h[3, 0, 1] * gb)
             n0, mu, v, k = n0 + n0_step, mu + mu_step, v + v_step, k + k_step
-            if calm and v - max(next_da, next_db) > 0.0:
+            if calm and v - max(next_da, next_db) > _SLIDES * v:
                 er, ei = simd.load(c.rotation, 0), simd.load(c.rotation, 1)
                 new_r = simd.negative_multiply_add(ei, zi, simd.multiply_add(er, zr, xr))
                 new_i = simd.multiply_add(er, zi, simd.multiply_add(ei, zr, xi))
