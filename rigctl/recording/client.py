@@ -109,8 +109,9 @@ class RecorderClient:
         )
 
     def mark(self, name: str, t_s: float, **values: Any) -> None:
-        """State what happened in the braking, e.g. "pressure_onset", at rig time `t_s`."""
-        self._link.send({"m": "mark", "name": name, "t": t_s, "values": values})
+        """State what happened in the braking, e.g. "pressure_onset", at rig time `t_s`; NaN becomes null."""
+        plain = {key: None if value != value else value for key, value in values.items()}  # noqa: PLR0124
+        self._link.send({"m": "mark", "name": name, "t": t_s, "values": plain})
 
     def end(self, status: str = "complete", note: str = "") -> None:
         """End the braking: "complete" or "incomplete". The file is made while the rig goes on."""

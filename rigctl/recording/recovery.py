@@ -56,6 +56,21 @@ class RecoveryReport:
             self.recovered or self.removed_parts or self.unreadable_spools or self.journaled or self.damaged
         )
 
+    def lines(self) -> list[str]:
+        """What was found and done, a line each, for people; empty when the campaign is in order."""
+        cut = "; {} bytes of its spool could not be read"
+        return [
+            *(
+                f"braking {r.index}: file made from its spool, {r.status}"
+                + (cut.format(r.bytes_cut) if r.bytes_cut else "")
+                for r in self.recovered
+            ),
+            *(f"removed the half-made file {path.name}" for path in self.removed_parts),
+            *(f"kept the unreadable spool as {path.name}: {why}" for path, why in self.unreadable_spools),
+            *(f"braking {index}: entered into the journal" for index in self.journaled),
+            *(f"damaged: {why} The braking will be done again." for _, why in self.damaged),
+        ]
+
 
 def recover(
     campaign: Campaign, evaluate: Evaluator = evaluate_braking, lock_timeout_s: float = 30.0
