@@ -15,7 +15,7 @@ from rich.console import Console
 
 from rigctl import __version__
 from rigctl.app import exit_codes
-from rigctl.core.errors import ConfigError, RigctlError
+from rigctl.core.errors import RigctlError
 
 DEFAULT_RIG = Path("configs/rigs/simulated.toml")
 
@@ -72,11 +72,19 @@ def run(
 @app.command()
 def resume(
     campaign: Annotated[Path, typer.Argument(help="Campaign folder of a run that did not come to its end.")],
+    acknowledge: Annotated[
+        str,
+        typer.Option(
+            "--acknowledge",
+            metavar="REASON",
+            help="After a safety trip: what was found and done, in your words.",
+        ),
+    ] = "",
 ) -> None:
     """Recover what a broken run has left and go on with the first braking that is not complete."""
     from rigctl.app.running import resume as resume_campaign
 
-    raise typer.Exit(resume_campaign(campaign, _console()))
+    raise typer.Exit(resume_campaign(campaign, acknowledge, _console()))
 
 
 @app.command()
@@ -146,7 +154,7 @@ def main() -> None:
         app()
     except RigctlError as error:
         print(f"rigctl: {error}", file=sys.stderr)
-        sys.exit(exit_codes.USAGE if isinstance(error, ConfigError) else exit_codes.FAILED)
+        sys.exit(exit_codes.of(error))
 
 
 if __name__ == "__main__":

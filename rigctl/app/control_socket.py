@@ -14,7 +14,7 @@ from typing import Any
 
 from rigctl.core.errors import DeviceError, LinkClosed
 from rigctl.core.wire import Link, Listener, connect
-from rigctl.engine.state import Progress, RunResult, Verb
+from rigctl.engine.state import Outcome, Progress, RunResult, State, Verb
 
 SOCKET_NAME = "controller.sock"
 
@@ -119,9 +119,9 @@ class ControlClient:
             return None
         kind = message.pop("m")
         if kind == "progress":
-            return Progress(**message)
+            return Progress(**{**message, "state": State(message["state"])})
         if kind == "result":
-            return RunResult(**message)
+            return RunResult(**{**message, "outcome": Outcome(message["outcome"])})
         return None
 
     def close(self) -> None:

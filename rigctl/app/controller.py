@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import getpass
 import os
 import signal
 import sys
@@ -36,6 +37,7 @@ class Controller:
         self._campaign: Path = options.campaign
         self._file = CampaignFile.load(options.campaign)
         self._attempt: int = options.attempt
+        self._reason: str = options.acknowledge
         self._done = frozenset(int(index) for index in options.done.split(",") if index)
         self._journal = Journal(options.campaign / "journal.jsonl", "controller")
         self._terminated = False
@@ -63,9 +65,6 @@ class Controller:
     def _run(self) -> RunResult:
         file = self._file
         recorder = RecorderClient.connect(self._run_dir, CONNECT_TIMEOUT_S, **file.recorder_session())
-        guard = Guard(
-            connect(self._run_dir / "watchdog.sock", CONNECT_TIMEOUT_S, "watchdog"), file.limits_hash8
-        )
         context = RigContext(
             run_dir=self._run_dir,
             time=file.time,
@@ -75,8 +74,8 @@ class Controller:
             log_dir=self._campaign / "logs",
         )
         rig = build_rig(file.rig, context)
-        guard.hello(run_id=self._campaign.name, pid=os.getpid(), campaign=str(self._campaign))
         with rig:
+            guard = self._connect_guard()
             self._journal.write("rig_opened", devices=rig.identities(), attempt=self._attempt)
             engine = Engine(
                 rig,
@@ -88,13 +87,21 @@ class Controller:
                 done=len(self._done),
                 verbs=self._next_verb,
                 report=self._control.tell,
+                acknowledgement=(getpass.getuser(), self._reason) if self._reason else None,
             )
             gc.collect()
             gc.freeze()
             result = engine.run()
-        recorder.close()
-        guard.close()
+            recorder.close()
+            guard.close()
         return result
+
+    def _connect_guard(self) -> Guard:
+        """The watchdog listens once it has its own connection to the rig."""
+        link = connect(self._run_dir / "watchdog.sock", CONNECT_TIMEOUT_S, "watchdog")
+        guard = Guard(link, self._file.limits_hash8)
+        guard.hello(run_id=self._campaign.name, pid=os.getpid(), campaign=str(self._campaign))
+        return guard
 
     def _next_verb(self) -> Verb | None:
         verb = self._control.next_verb()
@@ -115,6 +122,7 @@ def main() -> None:
     parser.add_argument("--campaign", type=Path, required=True)
     parser.add_argument("--attempt", type=int, default=0)
     parser.add_argument("--done", default="")
+    parser.add_argument("--acknowledge", default="")
     result = Controller(parser.parse_args()).run()
     sys.exit(0 if result.outcome is Outcome.FINISHED else 1)
 

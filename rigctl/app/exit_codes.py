@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from rigctl.core.errors import ConfigError, RigctlError, SafetyTrip
+
 OK: Final = 0
 FAILED: Final = 1
 """The command could not do what it was asked to (a device, a disk, a process)."""
@@ -15,3 +17,10 @@ TRIPPED: Final = 4
 """The watchdog tripped; the rig is in the safe state."""
 INCOMPLETE: Final = 5
 """The program came to its end, but some brakings are incomplete."""
+
+
+def of(error: RigctlError) -> int:
+    """Exit code of an error that reached the command line."""
+    if isinstance(error, ConfigError):
+        return USAGE
+    return TRIPPED if isinstance(error, SafetyTrip) else FAILED

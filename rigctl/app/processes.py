@@ -105,7 +105,9 @@ def start_recorder(run_dir: Path, campaign: Path) -> Child:
     return Child("recorder", arguments, campaign / "logs")
 
 
-def start_controller(run_dir: Path, campaign: Path, attempt: int, done: Sequence[int]) -> Child:
+def start_controller(
+    run_dir: Path, campaign: Path, attempt: int, done: Sequence[int], acknowledgement: str
+) -> Child:
     """The controller, which opens the rig and runs the engine."""
     arguments = [
         "rigctl.app.controller",
@@ -113,5 +115,6 @@ def start_controller(run_dir: Path, campaign: Path, attempt: int, done: Sequence
         "--campaign", str(campaign),
         "--attempt", str(attempt),
         "--done", ",".join(map(str, done)),
+        f"--acknowledge={acknowledgement}",
     ]  # fmt: skip
     return Child("controller", arguments, campaign / "logs")

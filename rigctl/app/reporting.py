@@ -26,6 +26,7 @@ def make_report(
     """
     from rigctl.analysis.prediction import Prediction
     from rigctl.analysis.report import build_report
+    from rigctl.analysis.summary import in_words
 
     file = CampaignFile.load(folder)
     path = file.prediction_path(folder)
@@ -46,5 +47,6 @@ def make_report(
             f"{duration_text(rig_s)} of rig time in {wall_s:.1f} s ({rig_s / wall_s:.0f}× real time)"
         )
     result = build_report(folder, prediction=prediction, info=info)
-    console.print(result.summary.text(), highlight=False)
+    for sentence in in_words(result.summary):
+        console.print(sentence, highlight=False)
     console.print(f"Report: {result.path}", highlight=False)

@@ -22,7 +22,7 @@ from rigctl.app.compose import build_rig, dry_run, prediction_of, problems_text,
 from rigctl.app.progress_view import ProgressView, duration_text
 from rigctl.app.reporting import make_report
 from rigctl.app.supervisor import Supervisor
-from rigctl.core.errors import ConfigError
+from rigctl.core.errors import ConfigError, SafetyTrip
 from rigctl.core.journal import read_journal
 from rigctl.engine.state import Outcome, RunResult
 from rigctl.hal.devices import RigContext
@@ -31,6 +31,9 @@ from rigctl.recording.recovery import recover
 from rigctl.safety.limits import load_limits
 
 DISK_RESERVE_BYTES = 500e6
+PROCESS_CAUSES = frozenset(
+    {"controller_gone", "controller_deaf", "heartbeat_late", "samples_late", "rig_gone", "terminated"}
+)
 
 
 @dataclass(frozen=True)
@@ -86,11 +89,19 @@ def run(options: RunOptions, console: Console) -> int:
             highlight=False,
         )
         console.print(f"Campaign {campaign.folder}", highlight=False)
-        return _carry_out(campaign, file, attempt=0, done=[], console=console)
+        return _carry_out(campaign, file, attempt=0, done=[], acknowledgement="", console=console)
 
 
-def resume(folder: Path, console: Console) -> int:
-    """Recover what a broken run has left, then go on with the first braking that is not complete."""
+def resume(folder: Path, acknowledgement: str, console: Console) -> int:
+    """Recover what a broken run has left, then go on with the first braking that is not complete.
+
+    Raises
+    ------
+    ConfigError
+        The folder is no campaign.
+    SafetyTrip
+        The run ended with a trip that wants a person's word first.
+    """
     file = CampaignFile.load(folder)
     campaign = open_campaign(folder)
     with campaign.lock("run"):
@@ -103,7 +114,36 @@ def resume(folder: Path, console: Console) -> int:
             return exit_codes.OK
         console.print(f"{len(done)} brakings are complete, {left} are left.", highlight=False)
         attempt = sum(1 for record in read_journal(campaign.journal_path) if record.kind == "run_started")
-        return _carry_out(campaign, file, attempt=attempt, done=sorted(done), console=console)
+        acknowledgement = _acknowledgement(campaign, acknowledgement)
+        return _carry_out(
+            campaign,
+            file,
+            attempt=attempt,
+            done=sorted(done),
+            acknowledgement=acknowledgement,
+            console=console,
+        )
+
+
+def _acknowledgement(campaign: Campaign, given: str) -> str:
+    """The word that the watchdog wants before it arms again; empty when nothing is to be acknowledged.
+
+    `rigctl resume` itself acknowledges that a process was gone. A trip by the rig's own state (temperature,
+    pressure, a sensor) wants the reason in a person's words.
+    """
+    trip = None
+    for record in read_journal(campaign.journal_path):
+        if record.source == "watchdog" and record.kind in ("trip", "reset"):
+            trip = record.payload if record.kind == "trip" else None
+    if trip is None:
+        return ""
+    if not given and trip.get("cause") not in PROCESS_CAUSES:
+        raise SafetyTrip(
+            f"the run ended with a safety trip: {trip.get('words', trip.get('cause'))}",
+            place=str(campaign.folder),
+            remedy='Remove the cause, then: rigctl resume CAMPAIGN --acknowledge "what was found and done"',
+        )
+    return given or "resumed on the command line after a process had gone"
 
 
 def _recover(campaign: Campaign, console: Console) -> None:
@@ -112,13 +152,25 @@ def _recover(campaign: Campaign, console: Console) -> None:
 
 
 def _carry_out(
-    campaign: Campaign, file: CampaignFile, *, attempt: int, done: list[int], console: Console
+    campaign: Campaign,
+    file: CampaignFile,
+    *,
+    attempt: int,
+    done: list[int],
+    acknowledgement: str,
+    console: Console,
 ) -> int:
     threading.Thread(target=_warm_up_figures, daemon=True).start()
     started = time.monotonic()
     with ProgressView(console, file.program, file.rig.capabilities) as view:
         supervisor = Supervisor(
-            campaign.folder, file, attempt=attempt, done=done, show=view.show, say=view.say
+            campaign.folder,
+            file,
+            attempt=attempt,
+            done=done,
+            acknowledgement=acknowledgement,
+            show=view.show,
+            say=view.say,
         )
         result = supervisor.run()
     wall_s = time.monotonic() - started

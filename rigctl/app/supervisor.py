@@ -42,6 +42,8 @@ class Supervisor:
         0 for the first run, 1, 2 … for resumed ones.
     done : list of int
         Brakings that are complete already.
+    acknowledgement : str
+        A person's reason for going on after a safety trip; empty when there was none.
     show : callable
         Called with each progress.
     say : callable
@@ -55,6 +57,7 @@ class Supervisor:
         *,
         attempt: int,
         done: list[int],
+        acknowledgement: str,
         show: Callable[[Progress], None],
         say: Callable[[str], None],
     ) -> None:
@@ -62,6 +65,7 @@ class Supervisor:
         self._file = file
         self._attempt = attempt
         self._done = done
+        self._acknowledgement = acknowledgement
         self._show = show
         self._say = say
         self._stop_asked = 0
@@ -87,7 +91,9 @@ class Supervisor:
         file = self._file
         context = RigContext(run_dir, file.time, file.seed, "campaign.toml", self._campaign)
         link = build_rig(file.rig, context).safety.watchdog_link()
-        controller = start_controller(run_dir, self._campaign, self._attempt, self._done)
+        controller = start_controller(
+            run_dir, self._campaign, self._attempt, self._done, self._acknowledgement
+        )
         watchdog = start_watchdog(run_dir, self._campaign, file.limits_path(self._campaign), link, file.time)
         recorder = start_recorder(run_dir, self._campaign)
         children += [controller, watchdog, recorder]

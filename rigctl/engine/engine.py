@@ -22,6 +22,7 @@ from rigctl.hal.rig import Rig
 from sequences.braking import Braking
 
 ARM_TIMEOUT_BLOCKS = 200
+BLOCKS_BEFORE_RESET = 60  # the watchdog wants to see the rig at rest first
 MAX_FAILURES_IN_A_ROW = 3
 SAFE_STATE_TIMEOUT_S = 60.0
 PAUSE_SLEEP_S = 0.02
@@ -65,6 +66,8 @@ class Engine:
         Asked once per block: the verb that a person has given since, or None.
     report : callable
         Called with the progress, at most every `REPORT_EVERY_S`.
+    acknowledgement : (who, reason), optional
+        A person's acknowledgement of the trip that ended an earlier run.
     """
 
     def __init__(
@@ -79,6 +82,7 @@ class Engine:
         done: int = 0,
         verbs: Callable[[], Verb | None],
         report: Callable[[Progress], None],
+        acknowledgement: tuple[str, str] | None = None,
     ) -> None:
         self._rig = rig
         self._guard = guard
@@ -87,6 +91,7 @@ class Engine:
         self._brakings = list(brakings)
         self._verbs = verbs
         self._report = report
+        self._acknowledgement = acknowledgement
         self.progress = Progress(total=total, done=done)
         self._procedures = Procedures(rig, recorder, self.progress)
         self._breakable = False  # a braking is under way that a verb may break off
@@ -246,6 +251,10 @@ class Engine:
     def _arm(self) -> Script:
         """Let the watchdog see good blocks, then wait until it has closed the relay."""
         self.progress.phase = "arming"
+        if self._acknowledgement is not None:
+            for _ in range(BLOCKS_BEFORE_RESET):
+                yield
+            self._guard.reset(*self._acknowledgement)
         self._guard.arm()
         for _ in range(ARM_TIMEOUT_BLOCKS):
             block = yield
@@ -254,12 +263,10 @@ class Engine:
                 self._armed = True
                 self._journal.write("armed", rig_s=block.end_s)
                 return
-            if self._guard.refusal:
-                break
         raise SafetyTrip(
-            self._guard.refusal or "the watchdog does not arm",
+            f"the watchdog does not arm. {self._guard.cause or ''}".rstrip(),
             place="watchdog",
-            remedy="See the journal and logs/watchdog.log.",
+            remedy=self._guard.remedy or "See the journal and logs/watchdog.log.",
         )
 
     def _until_done(self, braking: Braking) -> Script:

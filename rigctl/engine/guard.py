@@ -46,7 +46,6 @@ class Guard:
         self.state = "locked"
         self.cause: str | None = None
         self.remedy: str | None = None
-        self.refusal: str | None = None
 
     def hello(self, *, run_id: str, pid: int, campaign: str) -> None:
         """Say who is driving."""
@@ -55,6 +54,10 @@ class Guard:
     def arm(self) -> None:
         """Ask for the safety relay. The watchdog closes it when it has seen enough good blocks."""
         self._link.send({"m": "arm"})
+
+    def reset(self, who: str, reason: str) -> None:
+        """A person acknowledges an earlier trip. Refused while its cause lasts; never starts motion."""
+        self._link.send({"m": "reset", "who": who, "reason": reason})
 
     def disarm(self) -> None:
         """Motion has ceased for good: give the relay back."""
@@ -84,14 +87,11 @@ class Guard:
             raise SafetyTrip(self.cause or "tripped", place="watchdog", remedy=self.remedy or "")
 
     def _take(self, message: Message) -> None:
-        kind = message.get("m")
-        if kind == "status":
+        if message.get("m") == "status":
             self.state = str(message["state"])
             self._nonce = int(message["nonce"])
             self.cause = message.get("cause")
             self.remedy = message.get("remedy")
-        elif kind == "refused":
-            self.refusal = " ".join(str(message.get(key) or "") for key in ("cause", "remedy")).strip()
 
     def heartbeat(self, k: int, setpoints: dict[str, Any]) -> None:
         """Tell the watchdog that the loop has worked on block `k`; the checkpoints start afresh."""
