@@ -93,10 +93,16 @@ FRESH = 2.0
 
 
 @njit(inline="always", **_OPTIONS)
-def _mu(slip_variation: float, mu_mean: float, k: float, inverse_saturation: float) -> float:
-    """Friction law around the working point, sliding forwards: v - v_mean = -slip_variation."""
+def _mu_variation(slip_variation: float, k: float, inverse_saturation: float) -> float:
+    """Friction law around the working point, sliding forwards: mu(v) - mu_mean for v - v_mean = -slip_variation."""
     x = slip_variation * inverse_saturation
-    return mu_mean + k * slip_variation / np.sqrt(1.0 + x * x)
+    return k * slip_variation / np.sqrt(1.0 + x * x)
+
+
+@njit(inline="always", **_OPTIONS)
+def _forward_g(mu_variation: float, mu_mean: float, mu_ref: float, n0: float, compression: float) -> float:
+    """mu max(N0 + N~, 0) - mu_mean N0 - mu_ref N~ without the difference of large numbers: exactly 0 at rest."""
+    return mu_variation * n0 + (mu_mean + mu_variation) * max(compression, -n0) - mu_ref * compression
 
 
 @njit(**_OPTIONS)
@@ -112,9 +118,10 @@ def _deviation(
 ) -> float:
     """Deviation g of the friction force from its mean and from the linear part mu_ref N~, any slip direction."""
     v = v_mean - slip_variation
-    sign = 1.0 if v > 0.0 else (-1.0 if v < 0.0 else 0.0)
-    mu = _mu(v_mean - abs(v), mu_mean, k, inverse_saturation)
-    return sign * mu * max(n0 + compression, 0.0) - mu_mean * n0 - mu_ref * compression
+    if v > 0.0:
+        return _forward_g(_mu_variation(slip_variation, k, inverse_saturation), mu_mean, mu_ref, n0, compression)
+    mu = mu_mean + _mu_variation(v_mean + v, k, inverse_saturation) if v < 0.0 else 0.0
+    return -mu * max(n0 + compression, 0.0) - mu_mean * n0 - mu_ref * compression
 
 
 @njit(**_OPTIONS)
@@ -195,7 +202,7 @@ def _solve_friction(
     In: `contact` without the effect of the new g, `g` as first guess. Out: both at the end of the step.
     """
     groups = len(g)
-    holding = _mu(v_mean, mu_mean, k, inverse_saturation)
+    holding = mu_mean + _mu_variation(v_mean, k, inverse_saturation)
     for _ in range(_SWEEPS):
         for p in range(groups):
             n0 = c.share[p] * n0_pad
@@ -214,10 +221,13 @@ def _solve_friction(
             else:
                 speed = abs(v_mean - slip - mobility * g[p])
                 for _inner in range(_INNER):
-                    mu = _mu(v_mean - speed, mu_mean, k, inverse_saturation)
+                    mu = mu_mean + _mu_variation(v_mean - speed, k, inverse_saturation)
                     speed = max(abs(drive) - mobility * mu * normal, 0.0)
-                mu = _mu(v_mean - speed, mu_mean, k, inverse_saturation)
-                g[p] = (mu if drive > 0.0 else -mu) * normal - mean
+                variation = _mu_variation(v_mean - speed, k, inverse_saturation)
+                if drive > 0.0:
+                    g[p] = _forward_g(variation, mu_mean, c.mu_ref, n0, compression)
+                else:
+                    g[p] = -(mu_mean + variation) * normal - mean
     for row in range(2 * groups):
         for q in range(groups):
             contact[row] += c.fine_end_contact[row, q] * g[q]
@@ -392,8 +402,8 @@ def advance_pair(
         for sub in range(substeps):
             if calm:
                 n0_a, n0_b = share_a * n0, share_b * n0
-                ga = _mu(da, mu, k, inverse_saturation) * max(n0_a + na, 0.0) - mu * n0_a - mu_ref * na
-                gb = _mu(db, mu, k, inverse_saturation) * max(n0_b + nb, 0.0) - mu * n0_b - mu_ref * nb
+                ga = _forward_g(_mu_variation(da, k, inverse_saturation), mu, mu_ref, n0_a, na)
+                gb = _forward_g(_mu_variation(db, k, inverse_saturation), mu, mu_ref, n0_b, nb)
             else:
                 _point(operation, (i * substeps + sub) / steps, start)
                 _present_g(c, m, start, inverse_saturation)
