@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from rigctl.core.channels import ChannelData, ChannelSpec
 from rigctl.core.errors import RecordingError
+from rigctl.recording.spool import STARTED_MARK
 from rigctl.recording.spool_reader import Mark, Spool
 from rigctl.signals.decimation import FilterDescription, decimate, design_decimation
 
 COMPLETE, INCOMPLETE, RECOVERED = "complete", "incomplete", "recovered"
-STARTED_MARK = "recording_started"
 
 
 @dataclass(frozen=True)

@@ -148,7 +148,7 @@ class Recorder:
         """Blocks that a dead controller had sent: the kernel reports its death first, then hands them out."""
         for _ in range(2):
             try:
-                for message in link.drain():
+                while (message := link.recv(0)) is not None:
                     self._guarded(self._handle, message)
             except DeviceError:
                 continue

@@ -10,9 +10,9 @@ from typing import Any
 
 from rigctl.core.errors import RecordingError
 from rigctl.core.ring import SampleRing
-from rigctl.recording.braking import STARTED_MARK, decimation_factors
+from rigctl.recording.braking import decimation_factors
 from rigctl.recording.campaign import Campaign
-from rigctl.recording.spool import SpoolWriter
+from rigctl.recording.spool import MISSING_MARK, STARTED_MARK, SpoolWriter
 
 
 class RunningBraking:
@@ -62,7 +62,7 @@ class RunningBraking:
         Samples that the ring no longer holds, or never gets, leave a gap (`gap`); the rest is still worth it.
         """
         if not self._started:
-            self._spool.mark(STARTED_MARK, begin_s, {})
+            self._spool.mark(STARTED_MARK, begin_s, {"first": [start for start, _ in ranges]})
             self._started = True
         try:
             parts = [
@@ -87,7 +87,7 @@ class RunningBraking:
         """Write the end frame, flush, close."""
         try:
             if self.gap is not None:
-                self._spool.mark("samples_missing", self._spool.written_s, {"error": str(self.gap)})
+                self._spool.mark(MISSING_MARK, self._spool.written_s, {"error": str(self.gap)})
             self._spool.end(status, note)
         finally:
             self._spool.close()

@@ -38,6 +38,10 @@ MAX_PAYLOAD: Final = 64 * 1024 * 1024
 SYNC_PERIOD_S: Final = 0.5  # wall time; "at least once a second" with room for a slow disk
 
 KIND_HEADER, KIND_DATA, KIND_MARK, KIND_END = 1, 2, 3, 4
+STARTED_MARK: Final = "recording_started"
+"""Mark at the time of the first sample; its value `first` lists the count of it for each channel."""
+MISSING_MARK: Final = "samples_missing"
+"""Mark of a spool into which some samples never came."""
 
 
 def frame(kind: int, channel: int, sequence: int, first_sample: int, payload: bytes | memoryview) -> bytes:
@@ -63,10 +67,10 @@ class SpoolWriter:
         Rig time up to which samples were appended, and up to which they survive a power cut.
     """
 
-    def __init__(self, path: Path, fd: int, channels: list[ChannelSpec]) -> None:
+    def __init__(self, path: Path, fd: int, channels: list[ChannelSpec], t0_s: float) -> None:
         self.path = path
         self.bytes_written = 0
-        self.written_s = self.synced_s = float("-inf")
+        self.written_s = self.synced_s = t0_s
         self._fd = fd
         self._sequence = 0
         self._dtypes = [little_endian(spec.dtype) for spec in channels]
@@ -76,6 +80,13 @@ class SpoolWriter:
     @classmethod
     def create(cls, path: Path, channels: Iterable[ChannelSpec], header: dict[str, Any]) -> SpoolWriter:
         """Make the file, with its header on the disk when this returns.
+
+        Parameters
+        ----------
+        path : Path
+        channels : iterable of ChannelSpec
+        header : dict
+            Plain JSON values, among them "t0_s", the rig time at the start.
 
         Raises
         ------
@@ -96,7 +107,7 @@ class SpoolWriter:
             ) from error
         except OSError as error:
             raise disk_error(error, path, "make the spool") from error
-        writer = cls(path, fd, specs)
+        writer = cls(path, fd, specs, header["t0_s"])
         try:
             writer._append(frame(KIND_HEADER, 0, 0, 0, head), 1)
             writer.sync()

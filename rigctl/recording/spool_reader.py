@@ -30,7 +30,9 @@ from rigctl.recording.spool import (
     KIND_MARK,
     MAGIC,
     MAX_PAYLOAD,
+    MISSING_MARK,
     OVERHEAD,
+    STARTED_MARK,
     little_endian,
 )
 
@@ -55,7 +57,7 @@ class ChannelStretch:
     Attributes
     ----------
     samples : ndarray, shape (n,)
-        Missing samples are filled with the value before them.
+        Missing samples are filled with the value before them (at the start: after them).
     first : int
         Count of the first sample since the start of the rig.
     gaps : tuple of (int, int)
@@ -100,6 +102,7 @@ class Spool:
     def intact(self) -> bool:
         """True when nothing is missing: no bytes cut, no gap, and the end frame is there."""
         gaps = any(stretch.gaps for stretch in self.stretches.values())
+        gaps = gaps or any(mark.name == MISSING_MARK for mark in self.marks)
         return self.end is not None and not (self.bytes_cut or self.lost_frames or gaps)
 
 
@@ -196,8 +199,12 @@ def _assemble(path: Path, data: bytes | mmap.mmap) -> Spool:
             marks.append(Mark(**json.loads(data[item.start : item.stop])))
         elif item.kind == KIND_END:
             end = json.loads(data[item.start : item.stop])
+    started = next((mark.values for mark in marks if mark.name == STARTED_MARK), {})
+    firsts = started.get("first", [items[0].first_sample if items else 0 for items in parts])
     stretches = {
-        spec.name: _join(spec, items, data) for spec, items in zip(channels, parts, strict=True) if items
+        spec.name: _join(spec, first, items, data)
+        for spec, first, items in zip(channels, firsts, parts, strict=True)
+        if items
     }
     return Spool(
         path=path,
@@ -212,22 +219,26 @@ def _assemble(path: Path, data: bytes | mmap.mmap) -> Spool:
     )
 
 
-def _join(spec: ChannelSpec, items: Sequence[Frame], data: bytes | mmap.mmap) -> ChannelStretch:
-    """Join the frames of one channel; repeated samples are dropped, missing ones filled and listed."""
+def _join(spec: ChannelSpec, first: int, items: Sequence[Frame], data: bytes | mmap.mmap) -> ChannelStretch:
+    """Join the frames of one channel from sample `first` on; repeated samples are dropped, missing ones
+    filled and listed.
+    """
     dtype = little_endian(spec.dtype)
     pieces: list[NDArray[Any]] = []
     gaps: list[tuple[int, int]] = []
-    begin = following = items[0].first_sample
+    begin = following = first
     for item in items:
         samples = np.frombuffer(data[item.start : item.stop], dtype)
+        if not len(samples):
+            continue
         skip = following - item.first_sample
         if skip < 0:
             gaps.append((following - begin, item.first_sample - begin))
-            last = pieces[-1][-1] if pieces and len(pieces[-1]) else dtype.type(0)
+            last = pieces[-1][-1] if pieces else samples[0]
             pieces.append(np.full(-skip, last, dtype))
             skip = 0
         if skip < len(samples):
             pieces.append(samples[skip:])
             following = item.first_sample + len(samples)
-    joined = np.concatenate(pieces).astype(np.dtype(spec.dtype), copy=False)
+    joined = np.concatenate([np.empty(0, dtype), *pieces]).astype(np.dtype(spec.dtype), copy=False)
     return ChannelStretch(joined, begin, tuple(gaps))
