@@ -84,7 +84,7 @@ def _draw_events(axes: Axes, events: tuple[EventRow, ...]) -> None:
     points = [(p, e) for e in events if (p := _pressure(e)) is not None]
     if not points:
         return
-    points.sort(key=lambda item: item[1].level_db)
+    points.sort(key=lambda item: -item[1].level_db)  # quiet, small dots on top of loud, large ones
     level = np.array([e.level_db for _, e in points])
     axes.scatter(
         [p for p, _ in points],

@@ -33,7 +33,6 @@ _PNG: Any = {"compress_level": 4}
 LEVEL_MAP = LinearSegmentedColormap.from_list(
     "level", [mpl.colormaps["inferno_r"](x) for x in (0.16, 0.3, 0.45, 0.6, 0.75, 0.9)]
 )
-LEVEL_MAP.set_bad("none")
 LEVEL_NORM = Normalize(60.0, 100.0, clip=True)
 """One colour scale of sound levels for all figures, dB."""
 

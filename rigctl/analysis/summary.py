@@ -103,12 +103,10 @@ def _squeal(s: Summary) -> tuple[str, ...]:
     if s.n_with_sound == 0:
         return ()
     if s.n_squealing == 0:
-        return (
-            f"No squeal: none of the {s.n_with_sound} brakings with sound had an event above the threshold.",
-        )
+        return (f"No squeal was found ({_count(s.n_with_sound, 'braking')} with sound).",)
     sentences = [
-        f"{s.n_squealing} brakings squealed ({_percent(s.occurrence_share)}), with {s.n_events} "
-        f"event{'s' if s.n_events != 1 else ''} in all.",
+        f"{_count(s.n_squealing, 'braking')} squealed ({_percent(s.occurrence_share)}), "
+        f"with {_count(s.n_events, 'event')} in all.",
         f"The squeal frequency is {s.frequency_median_hz:.0f} Hz (median; half of the brakings lie between "
         f"{s.frequency_low_hz:.0f} and {s.frequency_high_hz:.0f} Hz).",
         f"The loudest squeal reached {s.level_max_db:.1f} dB"
@@ -124,7 +122,7 @@ def _squeal(s: Summary) -> tuple[str, ...]:
 
 
 def _comparison(s: Summary) -> tuple[str, ...]:
-    if s.predicted_onset_bar is None or s.predicted_frequency_hz is None:
+    if s.predicted_onset_bar is None or s.predicted_frequency_hz is None or s.n_complete == 0:
         return ()
     predicted = f"{s.predicted_frequency_hz:.0f} Hz from {s.predicted_onset_bar:.1f} bar"
     text = f"Predicted ({s.predicted_by}): {predicted}"
@@ -147,12 +145,15 @@ def _friction(s: Summary) -> tuple[str, ...]:
 def _warnings(s: Summary) -> tuple[str, ...]:
     found = []
     if s.n_clipped:
-        found.append(
-            f"Caution: in {s.n_clipped} brakings the microphone signal was clipped; their levels are too low."
-        )
+        where = _count(s.n_clipped, "braking")
+        found.append(f"Caution: in {where} the microphone signal was clipped; levels there are too low.")
     if s.n_unreadable:
-        found.append(f"Caution: {s.n_unreadable} braking files cannot be read; they are listed below.")
+        found.append(f"Caution: {_count(s.n_unreadable, 'braking file')} cannot be read; listed below.")
     return tuple(found)
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
 def _percent(share: float | None) -> str:
