@@ -104,6 +104,7 @@ class Engine:
         self._failures = 0
         self._rig_s = 0.0
         self._report_at = 0.0
+        self._owed_k: int | None = None  # block whose heartbeat has not been sent
 
     def run(self) -> RunResult:
         """Carry out the brakings and return how it ended; the rig is at rest or in the safe state then."""
@@ -147,8 +148,10 @@ class Engine:
     def _drive(self, script: Script) -> None:
         """One turn per block: status of the watchdog, verbs, script, recorder, heartbeat."""
         next(script)
+        self._catch_up()
         for block in self._rig.blocks():
             self._rig_s = block.end_s
+            self._owed_k = block.k
             self._guard.passed(Checkpoint.BLOCK_RECEIVED)
             self._guard.update(block.k)
             running = self._turn(script, block)
@@ -156,9 +159,17 @@ class Engine:
             self._listen_to_recorder()
             self._guard.passed(Checkpoint.RECORDER_TOLD)
             self._guard.heartbeat(block.k, self._commanded())
+            self._owed_k = None
             self._tell(block)
             if not running:
                 return
+
+    def _catch_up(self) -> None:
+        """After a fault in the middle of a block: the loop goes on, and owes the watchdog that heartbeat."""
+        if self._owed_k is not None:
+            self._guard.passed(ALL_CHECKPOINTS)
+            self._guard.heartbeat(self._owed_k, self._commanded())
+            self._owed_k = None
 
     def _turn(self, script: Script, block: Block) -> bool:
         verb = self._verbs()

@@ -1,24 +1,22 @@
-"""What a test engineer does by hand, as block-driven scripts: condition, spin up, brake, release, run down.
+"""What a test engineer does by hand, as block-driven scripts: spin up, brake, release, run down.
 
 Job: each procedure is a generator. It sets set-points, then ``block = yield`` waits for the next block of
 samples. Nothing here sleeps or looks at a wall clock. Not its job: order of brakings, pause and abort
-(`rigctl.engine.engine`), limits (watchdog).
+(`rigctl.engine.engine`), how a temperature is reached (`rigctl.engine.conditioning`), limits (watchdog).
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Generator, Mapping
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 from rigctl.core.blocks import Block
 from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED
 from rigctl.core.errors import RunError
+from rigctl.engine.conditioning import Air, Conditioner, Script, wait
 from rigctl.engine.state import BreakOff, Progress
 from rigctl.hal.rig import Rig
 from sequences.braking import Braking, Conditioning
-
-Script = Generator[None, Block, None]
 
 REST_PRESSURE_BAR = 0.8
 REST_SPEED_RPM = 1.0
@@ -59,106 +57,14 @@ class Procedures:
         self._config = rig.config.conditioning
         self._can = rig.config.capabilities
         self._ramp = self._can.max_speed_rate_rpm_s
-        self._heat_lead_k = 3.0
-        self._cool_lead_k = 1.0
-        self._ventilator_off_s = -math.inf
-        self._ventilating = False
+        self._air = Air(rig)
+        self._conditioner = Conditioner(rig, self._air, progress)
         self.recording = False
 
     def end_recording(self, status: str, note: str = "") -> None:
         """The present braking is over for the recorder."""
         self.recording = False
         self._recorder.end(status, note)
-
-    # -- conditioning ---------------------------------------------------------------------------
-
-    def condition(self, target_degc: float, how: Conditioning) -> Script:
-        """Bring the disc to a temperature and let surface and body come together.
-
-        Raises
-        ------
-        RunError
-            The temperature was not reached within `how.timeout_s`.
-        """
-        self._rig.request(dt_s=self._config.idle_block_s, recording=False)
-        block = yield
-        deadline_s = block.end_s + how.timeout_s
-        while True:
-            degc = block.mean(DISC_TEMPERATURE)
-            if how.mode == "at_most" and degc <= target_degc + how.tolerance_k:
-                return
-            if block.end_s > deadline_s:
-                raise RunError(
-                    f"the disc has {degc:.1f} °C, not {target_degc:g} °C, after {how.timeout_s:g} s.",
-                    place="conditioning",
-                    remedy="Raise timeout_s or tolerance_k of the sequence's conditioning, "
-                    "or look at the pyrometer and the ventilator.",
-                )  # fmt: skip
-            if degc < target_degc - how.tolerance_k:
-                block = yield from self._heat(target_degc, how, deadline_s)
-            elif degc > target_degc + how.tolerance_k:
-                block = yield from self._cool(target_degc, deadline_s)
-            else:
-                block, stayed = yield from self._soak(block, target_degc, how)
-                if stayed:
-                    return
-
-    def _heat(
-        self, target_degc: float, how: Conditioning, deadline_s: float
-    ) -> Generator[None, Block, Block]:
-        """Drag the brake until the disc surface is hotter than wanted by what it will lose to the body."""
-        self._progress.phase = f"heating to {target_degc:.0f} °C"
-        self._set_ventilator(0.0)
-        self._rig.pressure.set_pressure(0.0)
-        speed_rpm = how.drag_speed_rpm or self._can.conditioning_speed_rpm
-        self._rig.drive.set_speed(speed_rpm, self._ramp)
-        block = yield
-        while block.mean(SPEED) < 0.9 * speed_rpm and block.end_s < deadline_s:
-            block = yield
-        stop_degc = target_degc + self._heat_lead_k
-        self._rig.pressure.set_pressure(how.drag_pressure_bar or self._can.conditioning_pressure_bar)
-        while block.mean(DISC_TEMPERATURE) < stop_degc and block.end_s < deadline_s:
-            block = yield
-        self._rig.pressure.set_pressure(0.0)
-        block = yield from self._wait(self._settle_s(), block)
-        self._heat_lead_k = self._learn(self._heat_lead_k, target_degc - block.mean(DISC_TEMPERATURE), 40.0)
-        return block
-
-    def _cool(self, target_degc: float, deadline_s: float) -> Generator[None, Block, Block]:
-        """Blow air at the turning disc until it is a little cooler than wanted."""
-        self._progress.phase = f"cooling to {target_degc:.0f} °C"
-        self._rig.pressure.set_pressure(0.0)
-        self._rig.drive.set_speed(self._config.cooling_speed_rpm, self._ramp)
-        self._set_ventilator(self._config.ventilator_m3_h)
-        block = yield
-        while block.mean(DISC_TEMPERATURE) > target_degc - self._cool_lead_k and block.end_s < deadline_s:
-            block = yield
-        self._stop_ventilator(block)
-        block = yield from self._wait(self._settle_s(), block)
-        self._cool_lead_k = self._learn(self._cool_lead_k, block.mean(DISC_TEMPERATURE) - target_degc, 5.0)
-        return block
-
-    def _soak(
-        self, block: Block, target_degc: float, how: Conditioning
-    ) -> Generator[None, Block, tuple[Block, bool]]:
-        """Turn slowly without pressure; True when the temperature stayed within the tolerance."""
-        self._progress.phase = f"soaking at {target_degc:.0f} °C"
-        self._stop_ventilator(block)
-        self._rig.drive.set_speed(self._config.soak_speed_rpm, self._ramp)
-        end_s = block.end_s + how.soak_s
-        while block.end_s < end_s - 1e-9:
-            block = yield
-            if abs(block.mean(DISC_TEMPERATURE) - target_degc) > how.tolerance_k:
-                return block, False
-        return block, True
-
-    def _settle_s(self) -> float:
-        return 4.0 * self._config.idle_block_s
-
-    @staticmethod
-    def _learn(lead_k: float, missing_k: float, largest_k: float) -> float:
-        """Next time stop later (or earlier) by half of what was missing now."""
-        return min(max(lead_k + 0.5 * missing_k, 0.0), largest_k)
 
     # -- one braking ----------------------------------------------------------------------------
 
@@ -174,16 +80,15 @@ class Procedures:
         self._rig.request(dt_s=self._config.idle_block_s, recording=False)
         self._rig.pressure.set_pressure(0.0)
         self._rig.drive.set_speed(speed_rpm, self._ramp)
-        flow_m3_h = self._config.ventilator_m3_h if ventilator else 0.0
         block = yield
         if ventilator:
-            self._set_ventilator(flow_m3_h)
+            self._air.blow(self._config.ventilator_m3_h)
         else:
-            self._stop_ventilator(block)
+            self._air.stop(block)
         deadline_s = block.end_s + SPIN_UP_TIMEOUT_S
         tolerance_rpm = max(SPIN_UP_TOLERANCE[0], SPIN_UP_TOLERANCE[1] * speed_rpm)
         settled_s = 0.0
-        while settled_s < SPIN_UP_SETTLE_S or not (ventilator or self._air_is_still(block)):
+        while settled_s < SPIN_UP_SETTLE_S or not (ventilator or self._air.still(block)):
             block = yield
             deviation_rpm = abs(block.mean(SPEED) - speed_rpm)
             settled_s = settled_s + block.dt_s if deviation_rpm <= tolerance_rpm else 0.0
@@ -257,22 +162,22 @@ class Procedures:
                 )  # fmt: skip
             block = yield
 
+    def condition(self, target_degc: float, how: Conditioning) -> Script:
+        """Bring the disc to a temperature; see `Conditioner.condition`."""
+        yield from self._conditioner.condition(target_degc, how)
+
     def cool_down(self, target_degc: float, timeout_s: float) -> Script:
         """After `max_degc` was passed: cool to the cool-down temperature before anything else."""
-        block = yield from self._cool(target_degc, math.inf)
-        deadline_s = block.end_s + timeout_s
-        while block.mean(DISC_TEMPERATURE) > target_degc:
-            if block.end_s > deadline_s:
-                raise RunError(f"the disc does not cool to {target_degc:g} °C.", place="cool down",
-                               remedy="Check the ventilator.")  # fmt: skip
-            block = yield from self._cool(target_degc, deadline_s)
+        yield from self._conditioner.condition(
+            target_degc, Conditioning(mode="at_most", soak_s=0.0, timeout_s=timeout_s)
+        )
 
     def dwell(self, seconds: float) -> Script:
         """Do nothing for a while, turning slowly."""
         if seconds > 0.0:
             self._progress.phase = "dwelling"
             block = yield
-            yield from self._wait(seconds, block)
+            yield from wait(seconds, block)
 
     def run_down(self) -> Script:
         """Vent, stop, ventilator off: the way out of every run.
@@ -285,7 +190,7 @@ class Procedures:
         self._progress.phase = "stopping"
         self._rig.request(dt_s=self._config.idle_block_s, recording=False)
         self._rig.make_safe()
-        self._set_ventilator(0.0)
+        self._air.blow(0.0)
         block = yield
         deadline_s = block.end_s + RUN_DOWN_TIMEOUT_S
         while block.mean(PRESSURE) > REST_PRESSURE_BAR or abs(block.mean(SPEED)) > REST_SPEED_RPM:
@@ -297,23 +202,3 @@ class Procedures:
             block = yield
         self._rig.drive.disable()
         yield
-
-    # -- helpers --------------------------------------------------------------------------------
-
-    def _wait(self, seconds: float, block: Block) -> Generator[None, Block, Block]:
-        end_s = block.end_s + seconds
-        while block.end_s < end_s - 1e-9:
-            block = yield
-        return block
-
-    def _set_ventilator(self, flow_m3_h: float) -> None:
-        self._ventilating = flow_m3_h > 0.0
-        self._rig.ventilator.set_flow(flow_m3_h)
-
-    def _stop_ventilator(self, block: Block) -> None:
-        if self._ventilating:
-            self._ventilator_off_s = block.end_s
-            self._set_ventilator(0.0)
-
-    def _air_is_still(self, block: Block) -> bool:
-        return block.end_s - self._ventilator_off_s >= self._can.ventilator_settle_s
