@@ -1,7 +1,8 @@
-"""The simulated rig around the brake: drive train, pressure line, disc temperature, friction map, sensors, sound.
+"""The simulated rig around the brake: drive, pressure line, temperatures, friction map, sensors, sound.
 
-`Plant.step` advances everything by one block and gives the samples; `Plant.render_sound` the microphone's. Physical
-values come from `configs/plants/*.toml` as `PlantSettings`. SI inside, rig units at `Commands`, `PlantStep`, `PlantTruth`.
+`Plant.step` advances everything by one block and gives the samples; `Plant.render_sound` the microphone's.
+Physical values come from `configs/plants/*.toml` as `PlantSettings`. SI inside, rig units at `Commands`,
+`PlantStep` and `PlantTruth`.
 NOT its job: the brake's vibration (`sim_hardware.brake_model`), processes, time pacing and the HAL
 (`sim_hardware.devices`). Names are imported on first use, so that settings can be checked without numba.
 """

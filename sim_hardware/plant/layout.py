@@ -1,7 +1,7 @@
 """Constants and state of the slow physics as flat records, in SI: the seam between settings and kernels.
 
-Job: `CONSTANTS` and `STATE` (numpy record types that the kernels read by name), `constants` (settings to SI, with what
-depends on the step computed once), `initial_state`.
+Job: `CONSTANTS` and `STATE` (numpy record types that the kernels read by name), `constants` (settings to SI,
+with what depends on the step computed once), `initial_state`.
 NOT its job: physics (`slow_physics`).
 """
 
@@ -21,19 +21,21 @@ RADIATION_C2_M_K = 0.01438777
 _T90 = math.log(10.0)
 
 _CONSTANTS = (
-    "h inertia max_torque max_power speed_gain speed_reset torque_factor quick_stop_rate standstill bearing "
-    "bearing_viscous rise_omega fall_omega damping max_rate max_pressure half_hysteresis port ripple ripple_half "
-    "vent_rate vent_factor ambient surface_capacity bulk_capacity pad_capacity surface_bulk pad_disc pad_loss disc_share "
-    "surface_loss still rotation rotation_reference ventilated flow_max fan_lag flow_exponent radiation seal drag "
-    "reference_speed low_cold low_rise low_range high_base high_peak high_centre high_width high_fade blend minimum_mu "
-    "slope slope_floor slope_peak slope_centre slope_width slope_exponent slope_pressure slope_range bedding_deficit "
-    "bedding_energy piston_area radius f11 f12 f21 f22 pyro_factor c2_lambda emissivity emissivity_set pyro_low pyro_high "
-    "safety_factor"
+    "h inertia max_torque max_power speed_gain speed_reset torque_factor quick_stop_rate standstill "
+    "bearing bearing_viscous rise_omega fall_omega damping max_rate max_pressure half_hysteresis port "
+    "ripple ripple_half vent_rate vent_factor ambient surface_capacity bulk_capacity pad_capacity "
+    "surface_bulk pad_disc pad_loss disc_share surface_loss still rotation rotation_reference ventilated "
+    "flow_max fan_lag flow_exponent radiation seal drag reference_speed low_cold low_rise low_range "
+    "high_base high_peak high_centre high_width high_fade blend minimum_mu slope slope_floor slope_peak "
+    "slope_centre slope_width slope_exponent slope_pressure slope_range bedding_deficit bedding_energy "
+    "piston_area radius f11 f12 f21 f22 pyro_factor c2_lambda emissivity emissivity_set pyro_low "
+    "pyro_high safety_factor"
 )
 _STATE = (
-    "omega angle omega_set motor_torque reset pressure_set regulator regulator_rate vent_opening hydraulic pressure "
-    "surface bulk pad flow heat mu_reference slope_reference mu slope brake_torque scatter_mu scatter_slope next_mu "
-    "next_slope bedding_energy frame frame_rate pyro pyro_target safety_temperature friction_energy loss_energy"
+    "omega angle omega_set motor_torque reset pressure_set regulator regulator_rate vent_opening "
+    "hydraulic pressure surface bulk pad flow heat mu_reference slope_reference mu slope brake_torque "
+    "scatter_mu scatter_slope next_mu next_slope bedding_energy frame frame_rate pyro pyro_target "
+    "safety_temperature friction_energy loss_energy"
 )
 _STATE_COUNTERS = "tick heat_ticks pressed scatter_used queued"
 

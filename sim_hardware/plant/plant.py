@@ -8,6 +8,7 @@ NOT its job: the equations (`slow_physics`, `sound`, `sim_hardware.brake_model`)
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from sim_hardware.plant.sound import SOUND_HZ, Sound
 from sim_hardware.plant.words import Commands, PlantStep, PlantTruth
 
 TICK_NS = round(TICK_S * 1e9)
-#: while nothing is recorded slow channels come at 4000 / 200 = 20 Hz and mechanics advance by 10 ticks = 2.5 ms
+#: while nothing is recorded: slow channels at 4000 / 200 = 20 Hz, mechanics in steps of 10 ticks = 2.5 ms
 MONITOR_STRIDE = 200
 MONITOR_INNER = 10
 _SLOW = (TORQUE, PRESSURE, SPEED, DISC_TEMPERATURE)
@@ -30,7 +31,7 @@ _SCATTER_LIMIT = 3.0
 
 
 class Plant:
-    """A simulated rig with its brake. Deterministic: the same seed and calls give the same samples bit for bit.
+    """A simulated rig with its brake. The same seed and calls give the same samples bit for bit.
 
     Parameters
     ----------
@@ -123,9 +124,11 @@ class Plant:
         self._request_pressure(commands.pressure_set_bar * PA_PER_BAR)
         flow = min(max(commands.ventilator_m3_h, 0.0), self.ventilator_max_m3_h) * M3_S_PER_M3_H
         slow_physics.advance(
-            self._constants_for(inner), self._state, self._queue_tick, self._queue_value, ticks, inner, stride,
+            self._constants_for(inner), self._state, self._queue_tick, self._queue_value,
+            ticks, inner, stride,
             commands.speed_set_rpm * RAD_S_PER_RPM, max(commands.speed_ramp_rpm_per_s, 0.0) * RAD_S_PER_RPM,
-            drive_on, commands.quick_stop, commands.vent or not commands.relay_closed, flow, out, safety, track,
+            drive_on, commands.quick_stop, commands.vent or not commands.relay_closed, flow,
+            out, safety, track,
         )  # fmt: skip
         self._relay_closed = commands.relay_closed
         self._pending = (track, ticks, drive_on) if full_rate else None
@@ -151,7 +154,7 @@ class Plant:
 
     @property
     def truth(self) -> PlantTruth:
-        """True values at the end of the last step, for tests and for who must know when the rig is at rest."""
+        """True values at the end of the last step: for tests, and for who must know whether it is at rest."""
         s = self._state[0]
         bedding = 1.0 - math.exp(-float(s["bedding_energy"]) / self.settings.friction.bedding_energy_j)
         return PlantTruth(
@@ -172,7 +175,34 @@ class Plant:
             relay_closed=self._relay_closed,
         )
 
-    # -- inside ----------------------------------------------------------------------------------------------------
+    def set_condition(self, *, disc_degc: float | None = None, bedding: float | None = None) -> None:
+        """Start from another condition of the brake; for studies and tests.
+
+        Parameters
+        ----------
+        disc_degc : temperature of both disc nodes and of the sensors' lags; pads half-way to ambient
+        bedding : 0 for new pads, near 1 for bedded ones
+
+        Raises
+        ------
+        ValueError
+            bedding outside 0 to 1, temperature not finite
+        """
+        if disc_degc is not None:
+            if not math.isfinite(disc_degc):
+                raise ValueError(f"disc_degc is {disc_degc}; give a finite temperature")
+            disc_k = disc_degc + KELVIN_AT_0_DEGC
+            for name in ("surface", "bulk", "safety_temperature"):
+                self._state[name] = disc_k
+            for name in ("pyro", "pyro_target"):
+                self._state[name] = slow_physics.pyrometer_reading(self._constants_for(1)[0], disc_k)
+            self._state["pad"] = 0.5 * (disc_k + self.settings.thermal.ambient_degc + KELVIN_AT_0_DEGC)
+        if bedding is not None:
+            if not 0.0 <= bedding < 1.0:
+                raise ValueError(f"bedding is {bedding}; give 0 (new) to below 1 (bedded)")
+            self._state["bedding_energy"] = -math.log1p(-bedding) * self.settings.friction.bedding_energy_j
+
+    # -- inside ------------------------------------------------------------------------------------------
 
     def _constants_for(self, inner: int) -> Record:
         if inner not in self._constants:
@@ -214,7 +244,8 @@ class Plant:
         noise = self._safety_random.standard_normal((true.shape[1], 4), dtype=np.float32)
         readings = np.empty(true.shape)
         slow_physics.read_sensors(true, noise, self._safety_sensor, 1000.0, readings)
-        return dict(zip("pnMT", readings.tolist(), strict=True))
+        rows = cast("list[list[float]]", readings.tolist())
+        return dict(zip("pnMT", rows, strict=True))
 
 
 #: from SI to rig units, (scale, zero), in the order of `_SLOW` and of the safety readings

@@ -1,8 +1,9 @@
 """Physical values of the simulated rig as frozen, validated data (`configs/plants/*.toml`).
 
-Values are in the units that people use on a rig (bar, degC, 1/min); every key carries its unit. `layout` turns them
-into SI for the kernels.
-NOT its job: reading files (callers hand in a mapping), the brake's masses and stiffnesses (`sim_hardware.brake_model`).
+Values are in the units that people use on a rig (bar, degC, 1/min); every key carries its unit. `layout`
+turns them into SI for the kernels.
+NOT its job: reading files (callers hand in a mapping), the brake's masses and stiffnesses
+(`sim_hardware.brake_model`).
 """
 
 from __future__ import annotations
@@ -143,7 +144,7 @@ class PyrometerSettings(_Section):
 
 
 class SensorError(_Section):
-    """reading = value * gain + offset + noise; offset and noise (standard deviation) in the unit of the signal."""
+    """reading = value * gain + offset + noise (standard deviation), in the unit of the signal."""
 
     gain: Annotated[float, Field(ge=0.9, le=1.1)]
     offset: Annotated[float, Field(ge=-10.0, le=10.0)]
@@ -151,7 +152,7 @@ class SensorError(_Section):
 
 
 class SensorsSettings(_Section):
-    """Errors of the transducers that the controller reads (pressure in bar, torque in N m, speed in 1/min)."""
+    """Errors of the transducers that the controller reads (bar, N m, 1/min)."""
 
     pressure: SensorError
     torque: SensorError
@@ -159,7 +160,7 @@ class SensorsSettings(_Section):
 
 
 class SafetySensorsSettings(_Section):
-    """The watchdog's own transducers (bar, 1/min, N m, degC) and the number of readings per second."""
+    """Errors of the watchdog's own transducers (bar, 1/min, N m, degC)."""
 
     pressure: SensorError
     speed: SensorError

@@ -1,10 +1,10 @@
-"""The slow physics of the rig, compiled: drive train, pressure line, disc temperature, friction map, sensors' lags.
+"""The slow physics of the rig, compiled: drive, pressure line, temperatures, friction map, sensors' lags.
 
-One kernel, `advance`, steps everything on a grid of ticks of 0.25 ms: mechanics every `inner` ticks (1 while recording,
-10 = 2.5 ms while nothing is recorded), temperatures and the friction map every 20 ticks (5 ms) in both cases. SI units;
-constants and state are the records of `layout`.
-All compiled functions are in this one file on purpose: numba's disk cache looks at the file of the kernel only, so a
-change in a helper elsewhere would go unnoticed.
+One kernel, `advance`, steps everything on a grid of ticks of 0.25 ms: mechanics every `inner` ticks (1 while
+recording, 10 = 2.5 ms while nothing is recorded), temperatures and the friction map every 20 ticks (5 ms) in
+both cases. SI units; constants and state are the records of `layout`.
+All compiled functions are in this one file on purpose: numba's disk cache looks at the file of the kernel
+only, so a change in a helper elsewhere would go unnoticed.
 NOT its job: sensor noise and gains (`plant`), sound (`sound`), squeal (`sim_hardware.brake_model`).
 """
 
@@ -28,7 +28,7 @@ QUEUE = 16
 def map_mu(c: Any, pressure_pa: float, temperature_k: float) -> float:
     """Coefficient of friction of bedded pads at the reference speed (paper, Fig. 6).
 
-    At low pressure it rises with temperature; at high pressure it has a maximum. c: record of `layout.CONSTANTS`.
+    At low pressure it rises with temperature; at high pressure it has a maximum. c: `layout.CONSTANTS`.
     """
     warm = 1.0 - math.exp(-(temperature_k - 293.15) / c.low_range)
     low = c.low_cold + c.low_rise * warm
@@ -40,7 +40,7 @@ def map_mu(c: Any, pressure_pa: float, temperature_k: float) -> float:
 
 @njit(cache=True, nogil=True)
 def map_slope(c: Any, pressure_pa: float, temperature_k: float) -> float:
-    """Falling slope k at the reference speed, s/m (eq 28; paper, Fig. 12: depends on pressure and temperature)."""
+    """Falling slope k at the reference speed, s/m (eq 28; Fig. 12: depends on pressure and temperature)."""
     off = (temperature_k - c.slope_centre) / c.slope_width
     shape = c.slope_floor + c.slope_peak * math.exp(-off * off)
     return c.slope * shape * (max(pressure_pa, 0.1 * c.slope_pressure) / c.slope_pressure) ** c.slope_exponent
@@ -90,7 +90,7 @@ def heat_step(
 
 @njit(cache=True, nogil=True)
 def pyrometer_reading(c: Any, temperature_k: float) -> float:
-    """What the pyrometer makes of a surface (K): emissivity error with reflected ambient radiation, range limits."""
+    """What the pyrometer makes of a surface (K): emissivity error, reflected ambient light, range limits."""
     around = 1.0 / math.expm1(c.c2_lambda / c.ambient)
     signal = c.emissivity / math.expm1(c.c2_lambda / temperature_k) + (1.0 - c.emissivity) * around
     object_only = max((signal - (1.0 - c.emissivity_set) * around) / c.emissivity_set, 1e-30)
@@ -100,7 +100,7 @@ def pyrometer_reading(c: Any, temperature_k: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _drive(c: Any, s: Any, target: float, ramp: float, on: bool, quick: bool) -> None:
-    """Ramp generator, speed controller with current and power limit, current loop. Changes motor torque only."""
+    """Ramp generator, speed controller with current and power limit, current loop: the motor torque."""
     if not on:
         s.omega_set = s.omega
         s.reset = 0.0
@@ -124,15 +124,13 @@ def _drive(c: Any, s: Any, target: float, ramp: float, on: bool, quick: bool) ->
 
 @njit(cache=True, nogil=True)
 def _turn(c: Any, s: Any) -> None:
-    """Brake torque and motion of the shaft. Friction stops the shaft but never turns it backwards; stiction at rest."""
+    """Brake torque and motion of the shaft. Friction stops the shaft, holds it, never turns it backwards."""
     speed = s.omega * c.radius - c.reference_speed
     relative = speed / c.slope_range
     root = math.sqrt(1.0 + relative * relative)
     factor = (1.0 - c.bedding_deficit * math.exp(-s.bedding_energy / c.bedding_energy)) * s.scatter_mu
     slope = s.slope_reference * s.scatter_slope
-    s.mu = max(
-        factor * (s.mu_reference - slope * speed / root), c.minimum_mu
-    )  # eq 28 near the reference speed
+    s.mu = max(factor * (s.mu_reference - slope * speed / root), c.minimum_mu)  # eq 28
     s.slope = factor * slope / (root * root * root)
     holding = 2.0 * s.mu * max(s.pressure - c.seal, 0.0) * c.piston_area * c.radius + c.drag
     bearing = c.bearing + c.bearing_viscous * s.omega
@@ -241,12 +239,12 @@ def advance(
     Parameters
     ----------
     constants, state : (1,) records of `layout`; state is changed
-    queue_tick, queue_value : (QUEUE,) set-points of pressure (Pa) on their way and the tick at which they act; changed
+    queue_tick, queue_value : (QUEUE,) when the set-points of pressure on their way act, and Pa; changed
     inner : ticks per mechanical step; divides stride and SAFETY_TICKS
     stride : ticks between two samples; divides `ticks`
     speed_set, speed_ramp : rad/s, rad/s2
     flow_set : m3/s
-    out : (4, ticks // stride) torque N m, pressure Pa, speed rad/s, pyrometer K, at the start of each interval
+    out : (4, ticks // stride) torque N m, pressure Pa, speed rad/s, pyrometer K, at each interval's start
     safety : (4, ceil(ticks / SAFETY_TICKS)) pressure Pa, speed rad/s, torque N m, temperature K
     track : (rows, 9) every SAFETY_TICKS and at the end, or (0, 9) for none
     """
@@ -297,7 +295,8 @@ def advance(
 def read_sensors(true: Any, noise: Any, errors: Any, digits: float, readings: Any) -> None:
     """Readings of four sensors: readings (4, n) = errors[0] true + errors[1] + errors[2] noise.
 
-    true (4, n); noise (n, 4); errors (3, 4): scale, offset, standard deviation; rounded to 1/digits if digits > 0.
+    true (4, n); noise (n, 4); errors (3, 4): scale, offset, standard deviation; rounded to 1/digits if that
+    is not 0.
     """
     for j in range(4):
         scale, offset, sigma = errors[0, j], errors[1, j], errors[2, j]
@@ -322,7 +321,7 @@ def map_grid(constants: Any, pressure_pa: Any, temperature_k: Any, mu: Any, slop
 def heat_course(
     constants: Any, start_k: Any, power_w: float, omega: float, flow: float, h: float, out: Any
 ) -> None:
-    """Course of the three temperatures under constant power: out (n, 3) K at h, 2 h, ...; for studies and tests."""
+    """Temperatures under constant power: out (n, 3) K at h, 2 h, ...; for studies and tests."""
     c = constants[0]
     surface, bulk, pad = start_k[0], start_k[1], start_k[2]
     for i in range(out.shape[0]):

@@ -1,9 +1,9 @@
 """Sound at the microphone: what the brake radiates, what the rig adds, and the converter.
 
-Job: roughness excitation and time integration of the brake over one block, monopole radiation of its surfaces, motor
-lines, shaft, ventilator and valve noise, 16-bit conversion with clipping. Levels are dB(Z) re 20 uPa.
-NOT its job: slow physics; whether the brake squeals (that is `sim_hardware.brake_model`, from pressure, friction and
-slope at this moment); evaluation of the sound.
+Job: roughness excitation and time integration of the brake over a block, monopole radiation of its surfaces,
+motor lines, shaft, ventilator and valve noise, 16-bit conversion with clipping. Levels are dB(Z) re 20 uPa.
+NOT its job: slow physics; whether the brake squeals (that is `sim_hardware.brake_model`, from pressure,
+friction and slope at this moment); evaluation of the sound.
 """
 
 from __future__ import annotations
@@ -73,9 +73,7 @@ class Sound:
         self._hiss = _rms_pa(background.hiss_db) / (background.hiss_rate_bar_per_s * PA_PER_BAR)
         self._motor_step = 2.0 * math.pi * background.motor_line_hz / SOUND_HZ
         self._blade_step = 2.0 * math.pi * background.ventilator_blade_hz / (SOUND_HZ * self._flow_max)
-        self._integrator = SquealIntegrator(
-            brake, output_hz=float(SOUND_HZ), outputs=radiating
-        )
+        self._integrator = SquealIntegrator(brake, output_hz=float(SOUND_HZ), outputs=radiating)
         # monopole: p = rho / (4 pi r) S dv/dt
         monopole = (
             radiation.efficiency
@@ -84,7 +82,7 @@ class Sound:
         )
         self._weights = monopole * np.array(list(radiation.areas_m2.values()))
         self._filters = _filters(background)
-        self._memory = np.zeros((4, 2))
+        self._memory = np.zeros((3, 2))
         self._phasors = np.zeros((_N_LINES, 2))
         self._phasors[:, 0] = 1.0
         self._counts_per_pa = 32768.0 / settings.microphone.full_scale_pa
@@ -161,7 +159,7 @@ class Sound:
         )
 
     def _levels(self, row: Array, drive_on: bool) -> Array:
-        """Rms sound pressure of background, ventilator, hiss (set by the caller), amplitudes of the lines, Pa."""
+        """Rms sound pressure of background, ventilator, hiss (the caller's), amplitudes of the lines, Pa."""
         b = self._background
         levels = np.zeros(3 + _N_LINES)
         levels[_BACKGROUND] = self._floor
@@ -185,7 +183,7 @@ def _amplitude_pa(level_db: float) -> float:
 
 
 def _filters(b: BackgroundSettings) -> Array:
-    """Coefficients (pole of the low pass, pole of the high pass or 0, gain to unit power) per noise, (3, 3)."""
+    """Per noise: pole of the low pass, pole of the high pass or 0, gain to unit power; (3, 3)."""
     rows = []
     for low_hz, high_hz in (
         (b.background_corner_hz, 0.0),
@@ -196,14 +194,14 @@ def _filters(b: BackgroundSettings) -> Array:
         high = math.exp(-2.0 * math.pi * high_hz / SOUND_HZ) if high_hz > 0.0 else 0.0
         impulse = np.zeros(SOUND_HZ // 4)
         impulse[0] = 1.0
-        response = lfilter([1.0 - low], [1.0, -low], impulse)
+        response = np.asarray(lfilter([1.0 - low], [1.0, -low], impulse))
         if high > 0.0:
-            response = lfilter([1.0, -1.0], [1.0, -high], response)
+            response = np.asarray(lfilter([1.0, -1.0], [1.0, -high], response))
         rows.append((low, high, _UNIFORM / math.sqrt(float(np.sum(response**2)))))
     return np.array(rows)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@njit(cache=True, nogil=True)
 def _mix(
     motion: Any,
     weights: Any,
@@ -223,8 +221,9 @@ def _mix(
 ) -> None:
     """Sum all sources and convert to counts.
 
-    motion (n or 0, surfaces) m/s2; weights (surfaces,) Pa per m/s2; white (3, n) uniform in 0 to 1; filters (3, 3); memory (4, 2) and
-    phasors (4, 2), changed; steps (4,) rad per sample; first, last (7,) levels at start and end, linear between; out (n,) int16, filled.
+    motion (n or 0, surfaces) m/s2; weights (surfaces,) Pa per m/s2; white (3, n) uniform in 0 to 1; filters
+    (3, 3); memory (3, 2) and phasors (4, 2), changed; steps (4,) rad per sample; first, last (7,) levels at
+    start and end, linear between; out (n,) int16, filled.
     """
     n = out.shape[0]
     pressure = np.zeros(n)

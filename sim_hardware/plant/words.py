@@ -31,8 +31,8 @@ class PlantStep:
 
     Attributes
     ----------
-    samples : per slow channel (torque, pressure, speed, disc_temperature) float32 samples, shape (n,); the first
-        belongs to the start of the step
+    samples : per slow channel (torque, pressure, speed, disc_temperature) float32 samples, shape (n,); the
+        first belongs to the start of the step
     safety : readings of the watchdog's own sensors at 100 Hz, at least one, as plain numbers for messages:
         "p" bar, "n" 1/min, "M" N m, "T" degC
     stride : samples are every `stride`-th of the 4 kHz grid
