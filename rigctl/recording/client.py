@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from rigctl.core import wire
 from rigctl.core.blocks import Block
-from rigctl.core.errors import RecordingError
+from rigctl.core.errors import LinkClosed, RecordingError
 from rigctl.core.wire import Link, Message
 
 SOCKET_NAME: Final = "recorder.sock"
@@ -132,10 +132,13 @@ class RecorderClient:
         Raises
         ------
         LinkClosed
-            The recorder is dead.
+            The recorder is dead, and everything it said has been returned.
         """
-        for message in self._link.drain():
-            self._take(message)
+        try:
+            self._take_all()
+        except LinkClosed:
+            if not self._events:  # last words first; the next call raises
+                raise
         events, self._events = self._events, []
         return events
 
@@ -159,8 +162,7 @@ class RecorderClient:
 
     def _wait_until_copied(self, t_s: float, timeout_s: float = 30.0) -> None:
         deadline = time.monotonic() + timeout_s
-        for message in self._link.drain():
-            self._take(message)
+        self._take_all()
         while self._copied_s < t_s:
             self._receive(deadline, f"has not taken any samples for {timeout_s:g} s.")
 
@@ -173,6 +175,10 @@ class RecorderClient:
                 remedy="The disk is too slow or full: see the journal; `rigctl resume` continues.",
             )
         self._take(message)
+
+    def _take_all(self) -> None:
+        while (message := self._link.recv(0)) is not None:
+            self._take(message)
 
     def _take(self, message: Message) -> None:
         if message["m"] == "copied":

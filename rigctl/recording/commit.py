@@ -17,7 +17,7 @@ from rigctl.core.errors import RecordingError
 from rigctl.recording import nexus
 from rigctl.recording.braking import Evaluator, assemble
 from rigctl.recording.braking_file import file_image, read_summary, verify
-from rigctl.recording.campaign import COMMITTED, Campaign
+from rigctl.recording.campaign import COMMITTED, Campaign, file_sha256
 from rigctl.recording.durable import disk_error, publish, sync_folder, write_part
 from rigctl.recording.spool_reader import read_spool
 
@@ -87,6 +87,24 @@ def commit(campaign: Campaign, spool_path: Path, evaluate: Evaluator, journal: E
         n_events=braking.outcome.n_events,
         bytes_cut=braking.bytes_cut,
         summary=nexus.summary(braking),
+    )
+
+
+def is_committed(campaign: Campaign, spool_path: Path) -> bool:
+    """True when the file of this very attempt is committed and unchanged: only the spool was not removed.
+
+    Raises
+    ------
+    UnreadableSpool
+        The spool has no whole header.
+    """
+    header = read_spool(spool_path).header
+    index = int(header["specification"]["index"])
+    record = campaign.committed().get(index)
+    return (
+        record is not None
+        and record["attempt"] == header["attempt"]
+        and record["sha256"] == file_sha256(campaign.braking_path(index))
     )
 
 

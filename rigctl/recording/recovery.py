@@ -16,7 +16,7 @@ from rigctl.core.journal import Journal
 from rigctl.recording.braking import Evaluator
 from rigctl.recording.braking_file import read_summary, verify
 from rigctl.recording.campaign import COMMITTED, Campaign, file_sha256
-from rigctl.recording.commit import Committed, commit
+from rigctl.recording.commit import Committed, commit, is_committed
 from rigctl.recording.durable import disk_error, sync_folder
 from rigctl.recording.evaluation import evaluate_braking
 from rigctl.recording.spool_reader import UnreadableSpool
@@ -90,6 +90,9 @@ def recover(
             unreadable: list[tuple[Path, str]] = []
             for spool_path in sorted(campaign.spools.glob("*.spool")):
                 try:
+                    if is_committed(campaign, spool_path):
+                        spool_path.unlink()
+                        continue
                     recovered.append(commit(campaign, spool_path, evaluate, journal))
                 except UnreadableSpool as error:
                     unreadable.append((_keep_aside(spool_path), str(error)))
