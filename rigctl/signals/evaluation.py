@@ -17,9 +17,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigctl.core.channels import DISC_TEMPERATURE, MICROPHONE, PRESSURE, SPEED, TORQUE, ChannelData
+from rigctl.core.channels import (
+    DISC_TEMPERATURE,
+    MICROPHONE,
+    PRESSURE,
+    SPEED,
+    TORQUE,
+    ChannelData,
+    ChannelSpec,
+)
 from rigctl.signals._model import FrozenModel
 from rigctl.signals.calibration import clipped_share, level_db
+from rigctl.signals.decimation import decimate
 from rigctl.signals.friction import Application, FrictionGeometry, find_application, friction_coefficient
 from rigctl.signals.levels import leq_and_lmax_db
 from rigctl.signals.spectra import Spectrogram, band_mean_square, spectrogram
@@ -116,6 +125,22 @@ def evaluate(
         std_mu=float(settled_mu.std()) if settled_mu.size else None,
         **sound,
     )
+
+
+def warm_up() -> None:
+    """Compile (or load from the cache) all kernels of `evaluate` and `decimate`, by evaluating one second.
+
+    The first compilation takes about 4 s: call this where waiting does no harm, before the rig runs.
+    """
+    rate_hz = 40000.0
+    tone = np.sin(2.0 * np.pi * 2350.0 * np.arange(int(rate_hz)) / rate_hz)
+    counts = np.round(20000.0 * tone).astype(np.int16)
+    spec = ChannelSpec(MICROPHONE, "Pa", rate_hz, "int16", scale=1e-3)
+    for writeable in (True, False):  # samples out of a file or a pipe are read-only: kernels of their own
+        counts.flags.writeable = writeable
+        channels = {MICROPHONE: ChannelData(spec, 0.0, counts)}
+        evaluate(channels, friction=FrictionGeometry(), detection=SquealDetection())
+    decimate(tone, 4)
 
 
 def _window_s(

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from rigctl.core.channels import ChannelData, ChannelSpec
+from rigctl.signals import _tracking, decimation, levels, spectra
 from rigctl.signals.calibration import mean_square_pa2
-from rigctl.signals.evaluation import Evaluation, evaluate
+from rigctl.signals.evaluation import Evaluation, evaluate, warm_up
 from rigctl.signals.friction import FrictionGeometry, find_application, friction_coefficient
 from rigctl.signals.squeal import SquealDetection
 
@@ -164,7 +165,7 @@ def test_channels_of_different_rates_are_laid_on_the_pressure_grid():
 
 
 def test_decimated_input_gives_the_same_mu_as_raw_input():
-    from rigctl.signals.decimation import decimate  # noqa: PLC0415
+    from rigctl.signals.decimation import decimate
 
     raw = {k: v for k, v in braking().items() if k != "microphone"}
     small = {
@@ -192,3 +193,22 @@ def test_application_is_found_and_its_settled_part_excludes_the_ramps():
     assert (app.start, app.stop) == (12, 100)
     assert (app.settled_start, app.settled_stop) == (28, 84)
     assert find_application(np.zeros(5), GEOMETRY) is None
+
+
+def test_after_warm_up_nothing_is_compiled_any_more():
+    warm_up()
+    kernels = (
+        _tracking.find_peaks,
+        _tracking.track_peaks,
+        spectra._fill_frames,
+        spectra._to_power,
+        levels._square_sums,
+        decimation._filter,
+    )
+    before = [len(kernel.signatures) for kernel in kernels]
+    channels = braking()
+    for writeable in (True, False):
+        channels["microphone"].samples.flags.writeable = writeable
+        run(channels)
+    decimation.decimate(channels["torque"].samples, 4)
+    assert [len(kernel.signatures) for kernel in kernels] == before

@@ -32,7 +32,7 @@ def test_any_tone_is_found_within_a_hundredth_line_and_db(f_hz, level, phase):
 
 
 def test_equals_scipy_short_time_fft():
-    from scipy.signal import ShortTimeFFT  # noqa: PLC0415
+    from scipy.signal import ShortTimeFFT
 
     x = np.random.default_rng(0).standard_normal(40000)
     mine = spectrogram(x, RATE_HZ, fft_size=1024, hop=256)

@@ -46,7 +46,7 @@ def squeals(*args, **kwargs):
 # ---- found ----
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     f_hz=st.floats(1050, 15900),
     level=st.floats(61, 110),
@@ -158,12 +158,12 @@ def test_scaling_moves_levels_and_nothing_else(gain_db, seed):
 # ---- not found ----
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_white_noise_of_75_db_is_no_squeal(seed):
     assert detect(noise(75, 12, seed)) == []
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("level", [95, 110])
 def test_deafening_noise_with_single_lines_far_above_threshold_is_no_squeal(level, seed):
     assert detect(noise(level, 12, seed)) == []
