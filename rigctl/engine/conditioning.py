@@ -21,10 +21,11 @@ from sequences.braking import Conditioning
 
 Script = Generator[None, Block, None]
 
-SETTLE_S = 2.0  # surface and body of the disc come together
+SETTLE_S = 3.0  # surface and body of the disc come together
 TAPER_K = 12.0  # so far from the set-point heating begins to be gentler
 GENTLEST = 0.2  # share of the heating pressure close to the set-point
-AIM = 0.4  # share of the tolerance by which heating goes above the set-point: the disc cools until it brakes
+HEAD_START_S = 6.0  # heating goes above the set-point by what the still disc loses in this time
+PATIENCE_S = 30.0  # a disc that is too hot by no more than it loses in this time is left alone
 LEARN = 0.5
 FLASH_K_PER_W = (0.001, 0.006, 0.03)  # surface above body per friction power: least, first guess, most
 CHILL = (0.0, 0.02, 0.2)  # surface below body per excess over ambient, with the ventilator on
@@ -100,8 +101,10 @@ class Conditioner:
                 )
             if degc < target_degc - how.tolerance_k:
                 block = yield from self._heat(target_degc, how, deadline_s)
-            elif degc > target_degc + how.tolerance_k:
+            elif degc > target_degc + PATIENCE_S * self._still_loss_k_s(degc) + how.tolerance_k:
                 block = yield from self._cool(target_degc, deadline_s)
+            elif degc > target_degc + how.tolerance_k:
+                block = yield from self._rest(block, target_degc + 0.5 * how.tolerance_k, deadline_s)
             else:
                 block, stayed = yield from self._soak(block, target_degc, how)
                 if stayed:
@@ -120,7 +123,7 @@ class Conditioner:
         block = yield
         while block.mean(SPEED) < 0.9 * speed_rpm and block.end_s < deadline_s:
             block = yield
-        aim_degc = target_degc + AIM * how.tolerance_k
+        aim_degc = target_degc + min(HEAD_START_S * self._still_loss_k_s(target_degc), how.tolerance_k)
         power_w = 0.0
         while block.end_s < deadline_s:
             power_w = block.mean(TORQUE) * block.mean(SPEED) * RAD_S_PER_RPM
@@ -160,6 +163,21 @@ class Conditioner:
     def _body_degc(self, block: Block) -> float:
         degc = block.mean(DISC_TEMPERATURE)
         return degc + self._chill * max(degc - self._can.thermal.ambient_degc, 0.0)
+
+    def _rest(self, block: Block, until_degc: float, deadline_s: float) -> Generator[None, Block, Block]:
+        """Turn slowly in still air until the disc has cooled by itself."""
+        self._progress.phase = f"resting until {until_degc:.0f} °C"
+        self._air.stop(block)
+        self._rig.pressure.set_pressure(0.0)
+        self._rig.drive.set_speed(self._config.soak_speed_rpm, self._ramp)
+        while block.mean(DISC_TEMPERATURE) > until_degc and block.end_s < deadline_s:
+            block = yield
+        return block
+
+    def _still_loss_k_s(self, degc: float) -> float:
+        """Rate at which the disc cools without ventilator, by the rig's thermal estimate, K/s."""
+        disc = self._can.thermal
+        return disc.still_w_k * max(degc - disc.ambient_degc, 0.0) / disc.heat_capacity_j_k
 
     def _soak(
         self, block: Block, target_degc: float, how: Conditioning
