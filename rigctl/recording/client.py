@@ -177,6 +177,12 @@ class RecorderClient:
         self._take(message)
 
     def _take_all(self) -> None:
+        try:
+            self._take_waiting()
+        except LinkClosed:
+            self._take_waiting()  # the kernel reports a sudden death before it hands out the last words
+
+    def _take_waiting(self) -> None:
         while (message := self._link.recv(0)) is not None:
             self._take(message)
 

@@ -153,7 +153,7 @@ def test_a_refused_write_is_reported_and_costs_nothing_before(
 
 def test_a_failed_flush_is_never_acknowledged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     writer = SpoolWriter.create(tmp_path / "s", SPECS[:1], header(specification()))
-    writer.append([(0, 0, signals(0.1)["microphone"])], 5.0)
+    writer.append([(0, 0, signals(0.1)["microphone"])], 105.0)
 
     def fail(fd: int) -> None:
         raise OSError(errno.EIO, "Input/output error")
@@ -162,7 +162,7 @@ def test_a_failed_flush_is_never_acknowledged(tmp_path: Path, monkeypatch: pytes
     with pytest.raises(RecordingError, match="flush"):
         writer.sync()
     monkeypatch.undo()
-    assert writer.synced_s < 5.0
+    assert writer.synced_s < 105.0
     with pytest.raises(RecordingError):  # after a failed flush the kernel may have dropped pages: no retry
         writer.sync()
     writer.close()
@@ -172,10 +172,10 @@ def test_flushes_when_due_by_the_wall_clock(tmp_path: Path, monkeypatch: pytest.
     now = [1000.0]
     monkeypatch.setattr(spool_module.time, "monotonic", lambda: now[0])
     writer = SpoolWriter.create(tmp_path / "s", SPECS[:1], header(specification()))
-    writer.append([(0, 0, signals(0.1)["microphone"])], 5.0)
-    assert not writer.sync_if_due() and writer.synced_s < 5.0
+    writer.append([(0, 0, signals(0.1)["microphone"])], 105.0)
+    assert not writer.sync_if_due() and writer.synced_s < 105.0
     now[0] += 1.0
-    assert writer.sync_if_due() and writer.synced_s == 5.0
+    assert writer.sync_if_due() and writer.synced_s == 105.0
     now[0] += 1.0
     assert not writer.sync_if_due()  # nothing new
     writer.close()
