@@ -89,7 +89,7 @@ def _draw_events(axes: Axes, events: tuple[EventRow, ...]) -> None:
     axes.scatter(
         [p for p, _ in points],
         [e.frequency_hz / 1000 for _, e in points],
-        s=14 + 2.2 * np.clip(level - 60, 0, 50),
+        s=12 + 0.13 * np.clip(level - 60, 0, 50) ** 2,
         c=level,
         cmap=LEVEL_MAP,
         norm=LEVEL_NORM,

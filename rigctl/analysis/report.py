@@ -230,7 +230,7 @@ def _page(
     return environment.get_template("report.html.j2").render(
         version=__version__,
         title=f"Brake noise campaign {name}",
-        subtitle=" · ".join(part for part in (info.get("program", ""), info.get("rig", ""), first) if part),
+        subtitle=" · ".join(part for part in (*_named(info, "program", "rig"), first) if part),
         tiles=_tiles(summary),
         sentences=in_words(summary),
         figures=embedded,
@@ -244,6 +244,12 @@ def _page(
         info=[*info.items(), *_found_info(table)],
         detector=_detector(table, campaign_dir),
     )
+
+
+def _named(info: Mapping[str, str], *names: str) -> list[str]:
+    """Values of an info mapping by key, capitals disregarded; "" where missing."""
+    lower = {key.lower(): value for key, value in info.items()}
+    return [lower.get(name, "") for name in names]
 
 
 def _tiles(s: Summary) -> list[tuple[str, str]]:

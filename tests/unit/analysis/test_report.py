@@ -56,7 +56,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def built(matrix_campaign):
-    info = {"program": "squeal_matrix", "seed": "7", "note": "<script>alert(1)</script>"}
+    info = {"Program": "squeal_matrix", "seed": "7", "note": "<script>alert(1)</script>"}
     result = build_report(matrix_campaign, prediction=PREDICTION, info=info)
     return result, result.path.read_text(encoding="utf-8")
 
@@ -99,6 +99,7 @@ def test_report_says_what_was_found(built):
         assert words in page.text
     assert "<script>alert(1)</script>" in page.text  # shown, because escaped
     assert "&lt;script&gt;" in text
+    assert "squeal_matrix · 2000-01-01" in page.text
     assert result.summary.n_squealing == 3
     assert "prefers-color-scheme: dark" in text
     assert "@media print" in text
@@ -111,7 +112,7 @@ def test_building_twice_gives_the_same_files_and_leaves_no_global_state(matrix_c
     build_report(
         matrix_campaign,
         prediction=PREDICTION,
-        info={"program": "squeal_matrix", "seed": "7", "note": "<script>alert(1)</script>"},
+        info={"Program": "squeal_matrix", "seed": "7", "note": "<script>alert(1)</script>"},
     )
     assert {p.name: p.read_bytes() for p in result.path.parent.iterdir()} == before
     assert text == result.path.read_text(encoding="utf-8")
