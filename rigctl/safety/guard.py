@@ -281,6 +281,7 @@ class Guard:
         self._trip_at = (rig_s, now_s)
         self.safe_state_reached = False
         self.disarmed = False
+        self.monitor.good_in_a_row = 0
         self._last_refusal = None
         payload = {
             **cause.to_mapping(), "state_before": before.value,
@@ -306,7 +307,9 @@ class Guard:
             passed |= INPUTS_GOOD
         else:
             for verdict in verdicts:
-                if verdict.check.always or self.live:
+                # Locked, a limit that fails because nothing is measured keeps the rig locked and is no trip.
+                measured = verdict.cause.value is None or view.all_valid
+                if self.live or (verdict.check.always and measured):
                     self.trip(verdict.cause, now_s)
         if self._fingerprint.intact():
             passed |= LIMITS_INTACT

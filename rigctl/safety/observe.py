@@ -68,7 +68,7 @@ class Signal:
 
 def _number(value: object) -> float:
     """The finite number, or NaN for everything else."""
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value):
+    if isinstance(value, (int, float)) and isfinite(value):
         return value
     return nan
 
@@ -110,6 +110,13 @@ class View:
         else:
             self.anchor_s, self.anchor_degc = before.anchor_s, before.anchor_degc
             self.anchor_next_s, self.anchor_next_degc = before.anchor_next_s, before.anchor_next_degc
+
+    @property
+    def all_valid(self) -> bool:
+        """Whether every reading of the block is a number."""
+        return not (
+            self.pressure.invalid or self.speed.invalid or self.torque.invalid or self.temperature.invalid
+        )
 
     def temperature_rate_k_per_s(self) -> float:
         """Rise of the disc temperature over the last 0.5 to 1 s; 0 before that much has been seen."""

@@ -1,9 +1,9 @@
 """The watchdog as a process: one poll over safety channel and controller, one cycle per sample.
 
-Job: carry messages to the guard and its answers to the relay; the relay first, the journal second. In lockstep
-the sample alone wakes the process, and the heartbeat that belongs to it is read then, so every cycle waits
-once and a fault of the controller is found in the same block whatever the machine's load. In real time the
-heartbeat wakes it too, since its age counts. Not its job: decisions (`rigctl.safety.guard`).
+Job: carry messages to the guard and its answers to the relay; the relay first, the journal second. In
+lockstep the sample alone wakes the process, and the heartbeat that belongs to it is read then: every cycle
+waits once, and a fault of the controller is found in the same block whatever the load of the machine. In real
+time the heartbeat wakes it too, since its age counts. Not its job: decisions (`rigctl.safety.guard`).
 """
 
 from __future__ import annotations
@@ -193,6 +193,9 @@ class Watchdog:
     def _await_heartbeat(self, k: int, now_s: float) -> None:
         """Read the controller's messages in their order up to heartbeat `k`, and none beyond it."""
         monitor = self._guard.monitor
+        if self._guard.state is State.TRIPPED:  # nobody waits for a controller that may be the cause
+            self._drain_controller(now_s)
+            return
         if self._controller is None or k < self._first_k:
             return
         deadline_s = now_s + self._windows.heartbeat_s
@@ -200,7 +203,7 @@ class Watchdog:
             if self._read_controller(0.0, now_s):
                 continue
             left_s = deadline_s - time.monotonic()
-            if self._controller is None or self._guard.state is State.TRIPPED or left_s <= 0.0:
+            if self._controller is None or left_s <= 0.0:
                 return
             if not self._read_controller(left_s, now_s):
                 return
