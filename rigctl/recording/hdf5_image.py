@@ -22,6 +22,8 @@ _SCALAR = h5s.create(h5s.SCALAR)
 _TEXT_DTYPE = h5py.string_dtype()
 _TEXT = h5t.py_create(_TEXT_DTYPE, logical=True)
 _GROWTH_BYTES = 1 << 20
+_PLAIN = h5p.create(h5p.DATASET_CREATE)
+_PLAIN.set_obj_track_times(False)  # the wall clock has no place in the data
 
 
 class Group:
@@ -38,7 +40,7 @@ class Group:
 
     def text(self, name: str, value: str, **attributes: str | float) -> None:
         """Add a scalar string."""
-        made = h5d.create(self.id, name.encode(), _TEXT, _SCALAR)
+        made = h5d.create(self.id, name.encode(), _TEXT, _SCALAR, _PLAIN)
         made.write(h5s.ALL, h5s.ALL, np.array(value, dtype=_TEXT_DTYPE))
         set_attributes(made, attributes)
 
@@ -49,7 +51,7 @@ class Group:
     def array(self, name: str, values: NDArray[Any], units: str = "") -> None:
         """Add a small array as it is (contiguous, not compressed)."""
         space = h5s.create_simple(values.shape) if values.ndim else _SCALAR
-        made = h5d.create(self.id, name.encode(), _type_of(values.dtype.str), space)
+        made = h5d.create(self.id, name.encode(), _type_of(values.dtype.str), space, _PLAIN)
         if values.size:
             made.write(h5s.ALL, h5s.ALL, values)
         if units:
@@ -58,7 +60,7 @@ class Group:
     def packed(self, name: str, values: NDArray[Any], chunks: list[bytes], **attributes: str | float) -> None:
         """Add a one-dimensional data set from chunks made by `pack`."""
         length = min(CHUNK_SAMPLES, len(values))
-        plist = h5p.create(h5p.DATASET_CREATE)
+        plist = _PLAIN.copy()
         plist.set_chunk((length,))
         plist.set_shuffle()
         plist.set_deflate(1)

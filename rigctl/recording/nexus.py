@@ -84,6 +84,7 @@ def _channel(entry: Group, channel: StoredChannel, axes: dict[tuple[float, int],
     attributes: dict[str, str | float] = {
         "units": "count" if spec.is_counts else spec.unit,
         "long_name": f"{spec.name} (counts)" if spec.is_counts else f"{spec.name} ({spec.unit})",
+        "rate_hz": spec.rate_hz,
         "crc32": crc32(samples.data),
     }
     group.packed(signal, samples, pack(samples), **attributes)
@@ -99,9 +100,9 @@ def _channel(entry: Group, channel: StoredChannel, axes: dict[tuple[float, int],
         group.text("units_physical", spec.unit)
     chain = group.group("chain", "NXcollection")
     chain.text("native", json.dumps(channel.native.to_mapping(), ensure_ascii=False))
-    chain.number("rate_hz", spec.rate_hz, "Hz")
     chain.text("filter", _filter_json(channel))
-    chain.array("gaps", np.array(channel.gaps_s, np.float64).reshape(-1, 2), "s")
+    if channel.gaps_s:
+        chain.array("gaps", np.array(channel.gaps_s, np.float64), "s")
 
 
 def _filter_json(channel: StoredChannel) -> str:

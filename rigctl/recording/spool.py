@@ -2,13 +2,13 @@
 
 Job: whatever was flushed can be read again after any crash. One frame after the other::
 
-    magic 4 | kind u8 | channel u8 | 0 u16 | length u32 | sequence u32 | first sample u64 | crc u32 | payload
+    magic 4 | crc u32 | kind u8 | channel u8 | 0 u16 | length u32 | sequence u32 | first sample u64 | payload
 
-little endian; the CRC covers head and payload. The first frame is the header (JSON: channels, specification,
-t0, ...); then data frames (samples of one channel as acquired) and marker frames (JSON); a spool that was
-ended in order has an end frame. `length` is that of the payload in bytes, `first sample` counts the samples
-of the channel since the start of the rig. NOT its job: reading (`rigctl.recording.spool_reader`), what
-becomes of the samples (`finalise`).
+little endian; the CRC-32 covers everything after it. The first frame is the header (JSON: channels,
+specification, t0, ...); then data frames (samples of one channel as acquired) and marker frames (JSON); a
+spool that was ended in order has an end frame. `length` is that of the payload in bytes, `first sample`
+counts the samples of the channel since the start of the rig. NOT its job: reading (`spool_reader`), what
+becomes of the samples (`commit`).
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ from rigctl.recording.durable import disk_error, sync_folder, write_all
 
 MAGIC: Final = b"\xabRgF"
 FORMAT_VERSION: Final = 1
-HEAD: Final = struct.Struct("<4sBBHIIQ")
-CRC: Final = struct.Struct("<I")
-OVERHEAD: Final = HEAD.size + CRC.size
+HEAD: Final = struct.Struct("<4sIBBHIIQ")
+COVERED_FROM: Final = 8  # first byte of a frame that its CRC covers
+_COVERED_HEAD = struct.Struct("<BBHIIQ")
+_CRC = struct.Struct("<I")
 MAX_PAYLOAD: Final = 64 * 1024 * 1024
 SYNC_PERIOD_S: Final = 0.5  # wall time; "at least once a second" with room for a slow disk
 
@@ -46,8 +47,8 @@ MISSING_MARK: Final = "samples_missing"
 
 def frame(kind: int, channel: int, sequence: int, first_sample: int, payload: bytes | memoryview) -> bytes:
     """One frame, head and payload, ready to be appended."""
-    head = HEAD.pack(MAGIC, kind, channel, 0, len(payload), sequence, first_sample)
-    return b"".join((head, CRC.pack(crc32(payload, crc32(head))), payload))
+    head = _COVERED_HEAD.pack(kind, channel, 0, len(payload), sequence, first_sample)
+    return b"".join((MAGIC, _CRC.pack(crc32(payload, crc32(head))), head, payload))
 
 
 def little_endian(dtype: str) -> np.dtype[Any]:

@@ -21,7 +21,7 @@ from rigctl.core.channels import ChannelSpec
 from rigctl.core.errors import RecordingError
 from rigctl.recording.durable import disk_error
 from rigctl.recording.spool import (
-    CRC,
+    COVERED_FROM,
     FORMAT_VERSION,
     HEAD,
     KIND_DATA,
@@ -31,7 +31,6 @@ from rigctl.recording.spool import (
     MAGIC,
     MAX_PAYLOAD,
     MISSING_MARK,
-    OVERHEAD,
     STARTED_MARK,
     little_endian,
 )
@@ -125,7 +124,7 @@ def scan(data: bytes | mmap.mmap) -> tuple[list[Frame], int]:
     frames: list[Frame] = []
     size, at, used = len(data), 0, 0
     with memoryview(data) as view:
-        while at + OVERHEAD <= size:
+        while at + HEAD.size <= size:
             found = _frame_at(view, at, size)
             if found is not None and (not frames or found.sequence > frames[-1].sequence):
                 frames.append(found)
@@ -139,14 +138,14 @@ def scan(data: bytes | mmap.mmap) -> tuple[list[Frame], int]:
 
 
 def _frame_at(view: memoryview, at: int, size: int) -> Frame | None:
-    magic, kind, channel, zero, length, sequence, first = HEAD.unpack_from(view, at)
-    start = at + OVERHEAD
-    if magic != MAGIC or zero or length > MAX_PAYLOAD or start + length > size:
+    magic, crc, kind, channel, zero, length, sequence, first = HEAD.unpack_from(view, at)
+    start = at + HEAD.size
+    stop = start + length
+    if magic != MAGIC or zero or length > MAX_PAYLOAD or stop > size:
         return None
-    (crc,) = CRC.unpack_from(view, at + HEAD.size)
-    if crc32(view[start : start + length], crc32(view[at : at + HEAD.size])) != crc:
+    if crc32(view[at + COVERED_FROM : stop]) != crc:
         return None
-    return Frame(kind, channel, sequence, first, start, start + length)
+    return Frame(kind, channel, sequence, first, start, stop)
 
 
 def read_spool(path: Path) -> Spool:

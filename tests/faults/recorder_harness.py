@@ -72,7 +72,11 @@ def start_recorder(run: Path, campaign: Path, *options: str) -> subprocess.Popen
     return subprocess.Popen([*command, *options])
 
 
-def forked_recorder(run: Path, campaign: Path) -> multiprocessing.Process:
+def _main(arguments: list[str]) -> None:
+    sys.exit(main(arguments))
+
+
+def forked_recorder(run: Path, campaign: Path, min_free_mb: float = 1.0) -> multiprocessing.Process:
     """The same process, forked from a server that has everything loaded: many quick runs become possible."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["recorder_warm"])
@@ -82,10 +86,7 @@ def forked_recorder(run: Path, campaign: Path) -> multiprocessing.Process:
         forkserver.ensure_running()
     finally:
         os.environ.pop("PYTHONPATH") if paths is None else os.environ.update(PYTHONPATH=paths)
-    process = context.Process(
-        target=main,
-        args=(["--run-dir", str(run), "--campaign", str(campaign), "--min-free-mb", "1"],),
-        daemon=True,
-    )
+    arguments = ["--run-dir", str(run), "--campaign", str(campaign), "--min-free-mb", str(min_free_mb)]
+    process = context.Process(target=_main, args=(arguments,), daemon=True)
     process.start()
     return process  # type: ignore[return-value]

@@ -18,7 +18,7 @@ from rigctl.recording.campaign import Campaign, file_sha256
 from rigctl.recording.client import RecorderClient
 from rigctl.recording.recovery import recover
 
-RUNS, BRAKINGS, SECONDS = 10, 6, 0.5
+RUNS, BRAKINGS, SECONDS = 6, 6, 0.5
 
 
 def run_until_killed(campaign: Campaign, run: Path, messages: int, delay_s: float) -> list[dict[str, Any]]:

@@ -255,13 +255,14 @@ def test_a_full_disk_costs_nothing_that_was_acknowledged(run: Path, tiny_disk: P
 
 def test_little_space_refuses_a_braking_before_it_begins(run: Path, tiny_disk: Path) -> None:
     campaign = new_campaign(tiny_disk)
-    recorder = start_recorder(run, campaign.folder, "--min-free-mb", "50")
+    recorder = forked_recorder(run, campaign.folder, min_free_mb=50.0)
     MiniRig(run)
     client = RecorderClient.connect(run, 60.0)
     client.begin(specification(1), t0_s=0.0)
     client.wait_idle(30.0)
     events = client.poll()
     client.close()
-    assert recorder.wait(30) == 1
+    recorder.join(30)
+    assert recorder.exitcode == 1
     assert "MB are needed" in str(kinds(events, "failed")[0]["error"])
     assert len(SPECS) == 5 and not list(campaign.spools.iterdir())

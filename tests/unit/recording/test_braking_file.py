@@ -7,6 +7,7 @@ import math
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import h5py
@@ -154,6 +155,17 @@ def test_the_same_spool_gives_the_same_data_sets(tmp_path: Path) -> None:
         contents.append(found)
     assert len(contents[0]) > 80
     assert contents[0] == contents[1]
+
+
+def test_files_of_the_same_spool_differ_in_file_time_only(tmp_path: Path) -> None:
+    write_spool(tmp_path / "s", 0.5)
+    braking = assemble(read_spool(tmp_path / "s"), evaluate_braking)
+    first = file_image(braking)
+    time.sleep(1.1)
+    second = file_image(braking)
+    stamp = rb"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00"
+    assert first != second
+    assert re.sub(stamp, b"-", first) == re.sub(stamp, b"-", second)
 
 
 def test_verify_finds_changed_samples(made: tuple[Path, dict[str, np.ndarray]], tmp_path: Path) -> None:
