@@ -1,12 +1,12 @@
 """The planar multibody brake model: couplings from TOML, matrices, eigenvalues, squeal in the time domain.
 
-Pure numerics in SI units. NOT its job: the slow physics around the brake (pressure line, temperature, friction map),
-sound, clocks, devices; it imports nothing of the project. Names below are imported on first use, so that importing
-the package costs nothing and numba is loaded only by whoever integrates in time.
+Pure numerics in SI units. NOT its job: the slow physics around the brake (pressure line, temperature,
+friction map), sound, clocks, devices; it imports nothing of the project. Names below are imported on first
+use, so that importing the package costs nothing and numba is loaded only by whoever integrates in time.
 
-Modules: `spec` (the TOML as frozen models), `assembly` (matrices, coupling forces), `friction` (laws), `stability`
-(eigenvalues, onset), `modal`/`kernels`/`integrator` (fast time integration), `reference` (slow, tight, independent
-time integration), `identify` (parameters from published results).
+Modules: `spec` (the TOML as frozen models), `assembly` (matrices, coupling forces), `friction` (laws),
+`stability` (eigenvalues, onset), `modal`/`contact`/`kernels`/`simd`/`integrator` (fast time integration),
+`reference` (slow, tight, independent time integration), `identify` (parameters from published results).
 """
 
 from importlib import import_module

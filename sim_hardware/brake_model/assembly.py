@@ -1,10 +1,11 @@
-"""The brake as a mechanical system: coupling forces (eqs 2-17), matrices M, D, K and the state matrix A (eq 27).
+"""The brake as a mechanical system: coupling forces (eqs 2-17), matrices M, D, K and the state matrix A (eq
+27).
 
-One table of coupling elements, read from the brake file, gives both the loop over couplings that computes forces (as
-the paper's simulation code does, so that forces can be recorded) and the matrices.
+One table of coupling elements, read from the brake file, gives both the loop over couplings that computes
+forces (as the paper's simulation code does, so that forces can be recorded) and the matrices.
 Conventions: displacement of a point r of body i: u = (x - phi ry, y + phi rx) (eq 10); relative displacement
-du = u(first) - u(second); an element's force F acts as -F on the first and +F on the second body (eqs 12, 13). At a
-contact the first body is the pad; friction pushes pads towards +x.
+du = u(first) - u(second); an element's force F acts as -F on the first and +F on the second body (eqs 12,
+13). At a contact the first body is the pad; friction pushes pads towards +x.
 NOT its job: reading and checking brake files (`spec`), eigenvalues (`stability`), time integration.
 """
 
@@ -22,8 +23,8 @@ from sim_hardware.brake_model.spec import BrakeSpec, Contact, load_spec
 
 Array = NDArray[np.float64]
 
-#: friction force of a contact (N, towards +x on the pad, deviation from its mean) from the contact's index, the
-#: relative velocity pad minus disc along x (m/s) and the variation of the compression force (N)
+#: friction force of a contact (N, towards +x on the pad, deviation from its mean) from the contact's index,
+#: the relative velocity pad minus disc along x (m/s) and the variation of the compression force (N)
 ContactFriction = Callable[[int, float, float], float]
 
 _FREEDOMS = ("x", "y", "phi")
@@ -79,7 +80,9 @@ class Brake:
         self.slope_s_m = spec.operating.slope.value
         self.piston_area_m2 = spec.operating.piston_area.value
         self.effective_radius_m = spec.operating.effective_radius.value
-        self.freedoms = tuple(f"{body.name}.{f}" for body in spec.bodies for f in _FREEDOMS if f in body.freedoms)
+        self.freedoms = tuple(
+            f"{body.name}.{f}" for body in spec.bodies for f in _FREEDOMS if f in body.freedoms
+        )
         self._index = {name: i for i, name in enumerate(self.freedoms)}
         self._values = spec.evaluated()
         self.inertia = self._inertias()
@@ -94,7 +97,8 @@ class Brake:
             for torsion in spec.torsions
         )
 
-    # -- structure -------------------------------------------------------------------------------------------------
+    # -- structure
+    # -------------------------------------------------------------------------------------------------
 
     @property
     def n_dof(self) -> int:
@@ -144,7 +148,7 @@ class Brake:
 
     def _point_rows(self, key: str) -> tuple[Array, Array]:
         """Displacement of a connecting point per degree of freedom, along x and y (eq 10)."""
-        body = key.split(".")[0]
+        body = key.split(".", maxsplit=1)[0]
         r_x, r_y = self._values[f"points '{key}': x"], self._values[f"points '{key}': y"]
         rotation = self._freedom_row(body, "phi")
         return self._freedom_row(body, "x") - r_y * rotation, self._freedom_row(body, "y") + r_x * rotation
@@ -169,10 +173,14 @@ class Brake:
                 pad=first.split(".")[0],
             )
         return Element(
-            name, *rows, (value("stiffness_x"), value("stiffness_y")), (value("damping_x"), value("damping_y"))
+            name,
+            *rows,
+            (value("stiffness_x"), value("stiffness_y")),
+            (value("damping_x"), value("damping_y")),
         )
 
-    # -- forces: the loop over coupling elements ---------------------------------------------------------------------
+    # -- forces: the loop over coupling elements
+    # ---------------------------------------------------------------------
 
     def coupling_forces(
         self, displacement: Array, velocity: Array, friction: ContactFriction
@@ -202,7 +210,8 @@ class Brake:
                 contact += 1
         moments = np.array(
             [
-                torsion.stiffness_nm_rad * (torsion.row @ displacement) + torsion.damping_nms_rad * (torsion.row @ velocity)
+                torsion.stiffness_nm_rad * (torsion.row @ displacement)
+                + torsion.damping_nms_rad * (torsion.row @ velocity)
                 for torsion in self.torsions
             ]
         )  # eq 17
@@ -223,7 +232,8 @@ class Brake:
             total = total - torsion.row * moment  # eqs 7, 14, 15
         return total / self.inertia  # eqs 2, 3
 
-    # -- matrices ------------------------------------------------------------------------------------------------------
+    # -- matrices
+    # ------------------------------------------------------------------------------------------------------
 
     @cached_property
     def mass_matrix(self) -> Array:
@@ -281,7 +291,9 @@ class Brake:
         matrix = np.zeros((2 * n, 2 * n))
         matrix[:n, n:] = np.eye(n)
         matrix[n:, :n] = -self.stiffness_matrix(mu) / self.inertia[:, None]  # eq 27
-        matrix[n:, n:] = -self.damping_matrix(mu, slope, self.pad_force_n(pressure_pa)) / self.inertia[:, None]
+        matrix[n:, n:] = (
+            -self.damping_matrix(mu, slope, self.pad_force_n(pressure_pa)) / self.inertia[:, None]
+        )
         return matrix
 
 

@@ -1,7 +1,8 @@
-"""Small arithmetic expressions of parameters with units, as written in a brake file ("-x_con", "y_disc + h_pad").
+"""Small arithmetic expressions of parameters with units, as written in a brake file ("-x_con", "y_disc +
+h_pad").
 
-An expression is parsed into a syntax tree and only whitelisted nodes are evaluated: numbers, parameter names, unary
-sign, + - * /. Every value carries its physical dimension, so that adding a length to a mass is refused.
+An expression is parsed into a syntax tree and only whitelisted nodes are evaluated: numbers, parameter names,
+unary sign, + - * /. Every value carries its physical dimension, so that adding a length to a mass is refused.
 NOT its job: knowing which quantity is expected where (`spec`), or converting units: brake files are SI only.
 """
 
@@ -60,7 +61,9 @@ def unit_name(dimension: Dimension) -> str:
 def refuse(problem: str, *, place: str, value: object, remedy: str) -> PydanticCustomError:
     """Return the error for a brake file: place, problem, offending value and remedy."""
     return PydanticCustomError(
-        "brake_file", "{place}: {problem}", {"place": place, "problem": problem, "value": value, "remedy": remedy}
+        "brake_file",
+        "{place}: {problem}",
+        {"place": place, "problem": problem, "value": value, "remedy": remedy},
     )
 
 
@@ -98,7 +101,9 @@ def evaluate(text: str, parameters: Mapping[str, Quantity], *, place: str) -> Qu
             remedy="write numbers and parameter names joined by + - * / and parentheses",
         ) from error
     if not math.isfinite(result.value):
-        raise refuse(f"'{text}' is not finite", place=place, value=text, remedy="correct the parameters it names")
+        raise refuse(
+            f"'{text}' is not finite", place=place, value=text, remedy="correct the parameters it names"
+        )
     return result
 
 
@@ -112,7 +117,7 @@ def _value(node: ast.expr, parameters: Mapping[str, Quantity], text: str, place:
                     f"unknown parameter '{name}' in '{text}'",
                     place=place,
                     value=name,
-                    remedy=f"add [parameters.{name}] or use one of those given: {', '.join(sorted(parameters))}",
+                    remedy=f"add parameters.{name} or use one of: {', '.join(sorted(parameters))}",
                 )
             return parameters[name]
         case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
@@ -120,7 +125,11 @@ def _value(node: ast.expr, parameters: Mapping[str, Quantity], text: str, place:
             return Quantity(-inner.value if isinstance(sign, ast.USub) else inner.value, inner.dimension)
         case ast.BinOp(left=left, op=operator, right=right):
             return _combine(
-                _value(left, parameters, text, place), operator, _value(right, parameters, text, place), text, place
+                _value(left, parameters, text, place),
+                operator,
+                _value(right, parameters, text, place),
+                text,
+                place,
             )
     raise refuse(
         f"'{text}' holds something other than numbers, parameters, + - * / and parentheses",
@@ -140,11 +149,17 @@ def _combine(a: Quantity, operator: ast.operator, b: Quantity, text: str, place:
                     value=text,
                     remedy="add only quantities of the same unit",
                 )
-            return Quantity(a.value + b.value if isinstance(operator, ast.Add) else a.value - b.value, a.dimension)
+            return Quantity(
+                a.value + b.value if isinstance(operator, ast.Add) else a.value - b.value, a.dimension
+            )
         case ast.Mult():
-            return Quantity(a.value * b.value, Dimension(*(i + j for i, j in zip(a.dimension, b.dimension, strict=True))))
+            return Quantity(
+                a.value * b.value, Dimension(*(i + j for i, j in zip(a.dimension, b.dimension, strict=True)))
+            )
         case ast.Div() if b.value != 0.0:
-            return Quantity(a.value / b.value, Dimension(*(i - j for i, j in zip(a.dimension, b.dimension, strict=True))))
+            return Quantity(
+                a.value / b.value, Dimension(*(i - j for i, j in zip(a.dimension, b.dimension, strict=True)))
+            )
         case ast.Div():
             raise refuse(f"'{text}' divides by zero", place=place, value=text, remedy="correct the divisor")
     raise refuse(

@@ -4,10 +4,11 @@ All laws are one formula around the working point (mu_mean at the sliding speed 
 
     mu(v) = mu_mean - k (v - v_mean) / sqrt(1 + ((v - v_mean) / v_s)^2)
 
-constant: k = 0; linear falling (eq 28): v_s infinite; saturating: slope -k at the working point, so that the onset of
-squeal is that of the linear law, fading once the speed varies by more than v_s, so that the limit cycle stays small.
-The friction force opposes sliding: F = mu(|v|) N sgn(v) towards +x on the pad, and any value within +-mu(0) N at v = 0.
-NOT its job: where k and mu come from (the plant's friction map), time integration.
+constant: k = 0; linear falling (eq 28): v_s infinite; saturating: slope -k at the working point, so that the
+onset of squeal is that of the linear law, fading once the speed varies by more than v_s, so that the limit
+cycle stays small. The friction force opposes sliding: F = mu(|v|) N sgn(v) towards +x on the pad, and any
+value within +-mu(0) N at v = 0. NOT its job: where k and mu come from (the plant's friction map), time
+integration.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class _Law(BaseModel):
         return 0.0
 
     def mu(self, speed_m_s: ArrayLike, mean_speed_m_s: float) -> NDArray[np.float64]:
-        """Coefficient of friction while sliding at `speed_m_s` (any sign), working point at `mean_speed_m_s`."""
+        """Coefficient of friction while sliding at `speed_m_s` (any sign), working point at
+        `mean_speed_m_s`."""
         x = np.abs(np.asarray(speed_m_s, dtype=float)) - mean_speed_m_s
         return self.mu_mean - self.slope_s_m * x / np.sqrt(1.0 + (x * self.inverse_saturation_s_m) ** 2)
 

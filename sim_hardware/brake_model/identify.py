@@ -3,11 +3,11 @@
     python -m sim_hardware.brake_model.identify configs/brakes/model.toml \\
         --target onset_bar=15 frequency_hz=2140 --free c_fin_t,c_con_it,d_con --out new.toml
 
-Chosen parameters are varied on a logarithmic scale within a band around their start values, so that the brake meets the
-targets with the smallest change (least squares, with a weak pull towards the start). Targets: `onset_bar` (at the
-file's mu and slope) or `onset_mu` (constant friction), and `frequency_hz` of the pair that becomes unstable. The new
-file keeps the old one's text; identified values and their origins are replaced.
-NOT its job: deciding which parameters are uncertain; the targets alone do not single out one brake.
+Chosen parameters are varied on a logarithmic scale within a band around their start values, so that the brake
+meets the targets with the smallest change (least squares, with a weak pull towards the start). Targets:
+`onset_bar` (at the file's mu and slope) or `onset_mu` (constant friction), and `frequency_hz` of the pair
+that becomes unstable. The new file keeps the old one's text; identified values and their origins are
+replaced. NOT its job: deciding which parameters are uncertain; the targets alone do not single out one brake.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def identify(
     KeyError
         unknown parameter
     """
-    from scipy.optimize import least_squares  # noqa: PLC0415 (heavy, and needed here only)
+    from scipy.optimize import least_squares
 
     _check(brake, targets, free, band)
     start = np.array([brake.spec.parameters[name].value for name in free])
@@ -75,7 +75,13 @@ def identify(
 
     limit = float(np.log1p(band))
     solution = least_squares(
-        residuals, np.zeros(len(free)), bounds=(-limit, limit), diff_step=1e-6, x_scale=0.1, xtol=1e-12, ftol=1e-14
+        residuals,
+        np.zeros(len(free)),
+        bounds=(-limit, limit),
+        diff_step=1e-6,
+        x_scale=0.1,
+        xtol=1e-12,
+        ftol=1e-14,
     )
     found = changed(solution.x)
     return Identification(
@@ -95,12 +101,16 @@ def _check(brake: Brake, targets: Mapping[str, float], free: Sequence[str], band
     if any(not (np.isfinite(value) and value > 0.0) for value in targets.values()):
         raise ValueError(f"targets {dict(targets)}: give positive values")
     if "onset_bar" in targets and brake.slope_s_m <= 0.0:
-        raise ValueError(f"brake '{brake.name}' has the slope 0: pressure has no effect; use onset_mu or set a slope")
+        raise ValueError(
+            f"brake '{brake.name}' has the slope 0: pressure has no effect; use onset_mu or set a slope"
+        )
     if not free:
         raise ValueError("no free parameter; name at least one")
     missing = sorted(set(free) - set(brake.spec.parameters))
     if missing:
-        raise KeyError(f"unknown parameter {missing[0]!r}; the brake has: {', '.join(sorted(brake.spec.parameters))}")
+        raise KeyError(
+            f"unknown parameter {missing[0]!r}; the brake has: {', '.join(sorted(brake.spec.parameters))}"
+        )
     if not band > 0.0:
         raise ValueError(f"band is {band!r}; give a positive share, for example 0.3")
 
@@ -112,10 +122,11 @@ def _onset(brake: Brake, targets: Mapping[str, float]) -> Onset | None:
 
 
 def _misses(brake: Brake, targets: Mapping[str, float]) -> Array:
-    """Relative misses; smooth also where the brake is stable throughout: the growth rate at the wanted onset is used.
+    """Relative misses; smooth also where the brake is stable throughout: the growth rate at the wanted onset
+    is used.
 
-    At the wanted onset the pair nearest to the wanted frequency must have real part 0 and that frequency, and no other
-    pair may be unstable.
+    At the wanted onset the pair nearest to the wanted frequency must have real part 0 and that frequency, and
+    no other pair may be unstable.
     """
     if "onset_bar" in targets:
         pairs = eigen_pairs(brake, pressure_bar=targets["onset_bar"])
@@ -123,8 +134,11 @@ def _misses(brake: Brake, targets: Mapping[str, float]) -> Array:
         pairs = eigen_pairs(brake, targets["onset_mu"], 0.0)
     if "frequency_hz" in targets:
         frequency = targets["frequency_hz"]
-        # growth counts against the distance, so that the pair in question does not change places with a neighbour
-        critical = min(pairs, key=lambda pair: abs(pair.frequency_hz - frequency) / frequency + abs(pair.damping_ratio))
+        # growth counts against the distance, so that the pair in question does not change places with a
+        # neighbour
+        critical = min(
+            pairs, key=lambda pair: abs(pair.frequency_hz - frequency) / frequency + abs(pair.damping_ratio)
+        )
         misses = [critical.damping_ratio * 100.0, (critical.frequency_hz - frequency) / frequency * 10.0]
     else:
         critical = min(pairs, key=lambda pair: pair.damping_ratio)
@@ -143,14 +157,15 @@ def updated_text(text: str, brake: Brake, factors: Mapping[str, float], origin: 
     """
     for name in factors:
         parameter = brake.spec.parameters[name]
-        line = (
-            f"{name} = {{ value = {parameter.value!r}, unit = {json.dumps(parameter.unit)}, origin = {json.dumps(origin)} }}"
-        )
+        unit, source = json.dumps(parameter.unit), json.dumps(origin)
+        line = f"{name} = {{ value = {parameter.value!r}, unit = {unit}, origin = {source} }}"
         text, count = re.subn(
             rf"(?m)^{re.escape(name)}[ \t]*=[ \t]*\{{.*\}}[ \t]*$", lambda _, line=line: line, text
         )
         if count != 1:
-            raise ValueError(f"parameter {name!r} stands {count} times as '{name} = {{ ... }}'; write it once on one line")
+            raise ValueError(
+                f"parameter {name!r} stands {count} times as '{name} = {{ ... }}'; write it once on one line"
+            )
     return text
 
 
@@ -164,7 +179,9 @@ def _shown(onset: Onset | None, targets: Mapping[str, float]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code (0 done, 1 targets not met, 2 refused)."""
-    parser = argparse.ArgumentParser(prog="python -m sim_hardware.brake_model.identify", description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog="python -m sim_hardware.brake_model.identify", description=(__doc__ or "").split("\n")[0]
+    )
     parser.add_argument("brake", type=Path, help="brake file to start from")
     parser.add_argument("--target", nargs="+", required=True, metavar="NAME=VALUE", help=", ".join(TARGETS))
     parser.add_argument("--free", required=True, metavar="NAME,NAME,...", help="parameters to vary")
@@ -185,7 +202,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             met = ", ".join(f"{name} = {value:g}" for name, value in targets.items())
             text = options.brake.read_text(encoding="utf-8")
             options.out.write_text(
-                updated_text(text, result.brake, result.factors, f"identified by us against {met}"), encoding="utf-8"
+                updated_text(text, result.brake, result.factors, f"identified by us against {met}"),
+                encoding="utf-8",
             )
             print(f"written: {options.out}")
     except (OSError, ValueError, KeyError) as error:  # includes refused and unreadable brake files
@@ -199,7 +217,9 @@ def _meets(onset: Onset | None, targets: Mapping[str, float], tolerance: float =
         return False
     wanted = targets.get("onset_bar", targets.get("onset_mu", 0.0))
     frequency = targets.get("frequency_hz", onset.frequency_hz)
-    return abs(onset.value / wanted - 1.0) < tolerance and abs(onset.frequency_hz / frequency - 1.0) < tolerance
+    return (
+        abs(onset.value / wanted - 1.0) < tolerance and abs(onset.frequency_hz / frequency - 1.0) < tolerance
+    )
 
 
 if __name__ == "__main__":

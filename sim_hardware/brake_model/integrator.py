@@ -1,12 +1,13 @@
 """The squealing brake in the time domain: what the plant calls block by block.
 
-`SquealIntegrator` integrates the deviation of the brake from its steadily sliding state under the working point given
-by the caller (pad force, friction law, sliding speed) and returns accelerations or other outputs at the output rate.
-The linear brake is propagated exactly (`modal`), friction is evaluated at the pads only (`kernels`).
+`SquealIntegrator` integrates the deviation of the brake from its steadily sliding state under the working
+point given by the caller (pad force, friction law, sliding speed) and returns accelerations or other outputs
+at the output rate. The linear brake is propagated exactly (`modal`), friction is evaluated at the pads only
+(`kernels`).
 
-Modelled: friction mu(v) (N0 + N~) with the varying normal force N~, reversal of slip and sticking, loss of friction when
-a pad's normal force falls to zero. Not modelled: the normal contact springs stay linear when a pad lifts off.
-NOT its job: where the working point comes from, sound, torque, noise generation.
+Modelled: friction mu(v) (N0 + N~) with the varying normal force N~, reversal of slip and sticking, loss of
+friction when a pad's normal force falls to zero. Not modelled: the normal contact springs stay linear when a
+pad lifts off. NOT its job: where the working point comes from, sound, torque, noise generation.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim_hardware.brake_model import kernels
+from sim_hardware.brake_model import contact, kernels
 from sim_hardware.brake_model.assembly import Array, Brake
 from sim_hardware.brake_model.modal import (
     EXTRAPOLATION,
@@ -37,7 +38,8 @@ if TYPE_CHECKING:
 _FINE_HZ = 320_000.0
 #: a mode that decays by more than this in one step cannot be carried in the s form
 _FASTEST_DECAY = 1e-3
-#: modes below this size are set to zero between calls, so that a brake at rest does not compute with subnormal numbers
+#: modes below this size are set to zero between calls, so that a brake at rest does not compute with
+#: subnormal numbers
 _NEGLIGIBLE = 1e-200
 
 
@@ -47,10 +49,11 @@ class SquealIntegrator:
     Parameters
     ----------
     brake : the brake
-    mu_ref : friction of the linear part; any value gives the same motion, one near the actual mu gives it most exactly
+    mu_ref : friction of the linear part; any value gives the same motion, one near the actual mu gives it
+        most exactly
     output_hz : rate of outputs and excitation
-    substeps : internal steps per output interval. 1 (40 kHz) keeps squeal within 0.01 Hz and 0.01 dB of a tight reference
-        (`tests/benchmarks/bench_brake_model.py`)
+    substeps : internal steps per output interval. 1 (40 kHz) keeps squeal within 0.01 Hz and 0.01 dB of a
+        tight reference (`tests/benchmarks/bench_brake_model.py`)
     outputs : names of the outputs, see `outputs`; default: acceleration of every degree of freedom
     fine_steps : first-order-hold steps per internal step around slip reversals; default reaches 320 kHz
 
@@ -90,18 +93,20 @@ class SquealIntegrator:
         if fine < 1:
             raise ValueError(f"fine_steps is {fine!r}; give at least 1")
         self._system = modal_system(brake, brake.mu if mu_ref is None else mu_ref)
-        self._coefficients = _coefficients(brake, self._system, self.outputs, 1.0 / (output_hz * substeps), substeps, fine)
+        self._coefficients = _coefficients(
+            brake, self._system, self.outputs, 1.0 / (output_hz * substeps), substeps, fine
+        )
         self.pads = tuple(group.pad for group in self._system.groups)
         self.n_pads = len(self.pads)
         padded = self._coefficients.rotation.shape[1]
-        self._memory = kernels.Memory(
+        self._memory = contact.Memory(
             np.zeros((2, padded)),
-            np.zeros((kernels.PAST, self.n_pads)),
+            np.zeros((contact.PAST, self.n_pads)),
             np.zeros(self.n_pads),
             np.zeros(2 * self.n_pads),
             np.zeros(2),
         )
-        pair = self.n_pads == 2 and padded == MODE_BLOCK  # noqa: PLR2004
+        pair = self.n_pads == 2 and padded == MODE_BLOCK
         self._advance = kernels.advance_pair if pair else kernels.advance_general
         self.reset()
 
@@ -109,7 +114,7 @@ class SquealIntegrator:
         """Go to the steadily sliding state, without memory."""
         for array in self._memory:
             array[...] = 0.0
-        self._memory.flags[0] = kernels.CALM  # zero is an exact history of that state
+        self._memory.flags[0] = contact.CALM  # zero is an exact history of that state
 
     def advance(
         self,
@@ -129,10 +134,13 @@ class SquealIntegrator:
         n_out : number of output intervals
         normal_force_n : (start, end) mean normal force of one pad, p A; here and below linear within the call
         mu : (start, end) coefficient of friction at the mean sliding speed
-        slip_m_s : (start, end) mean sliding speed, >= 0. At 0 the pads stick: slow; better do not integrate then
+        slip_m_s : (start, end) mean sliding speed, >= 0. At 0 the pads stick: slow; better do not integrate
+            then
         k_s_m : (start, end) falling slope of the friction law at the mean sliding speed
-        saturation_m_s : size v_s of speed variation at which the slope fades (`friction`); None: linear law (eq 28)
-        excitation_n : (n_out, n_pads) N, friction force from surface roughness, held over each output interval
+        saturation_m_s : size v_s of speed variation at which the slope fades (`friction`); None: linear law
+            (eq 28)
+        excitation_n : (n_out, n_pads) N, friction force from surface roughness, held over each output
+            interval
 
         Returns
         -------
@@ -154,17 +162,21 @@ class SquealIntegrator:
             inverse_saturation = 1.0 / saturation_m_s
         if not np.isfinite(operation).all() or (operation[[0, 2]] < 0.0).any():
             raise ValueError(
-                f"working point (pad force, mu, slip, k) {operation.tolist()}: give finite values, pad force and slip >= 0"
+                f"working point (pad force, mu, slip, k) {operation.tolist()}: "
+                "give finite values, pad force and slip >= 0"
             )
         out = np.zeros((n_out, len(self.outputs)))
         if n_out:
             self._advance(self._coefficients, self._memory, operation, inverse_saturation, excitation, out)
             if not np.isfinite(self._memory.modes).all():
                 raise FloatingPointError(
-                    f"the motion of brake '{self.brake.name}' is not finite; check its stability at mu = {mu}, "
-                    f"pad force {normal_force_n} N, k = {k_s_m} s/m, or give saturation_m_s"
+                    f"the motion of brake '{self.brake.name}' is not finite; check its stability at "
+                    f"mu = {mu}, pad force {normal_force_n} N, k = {k_s_m} s/m, or give saturation_m_s"
                 )
-            if np.abs(self._memory.modes).max() < _NEGLIGIBLE and np.abs(self._memory.history).max() < _NEGLIGIBLE:
+            if (
+                np.abs(self._memory.modes).max() < _NEGLIGIBLE
+                and np.abs(self._memory.history).max() < _NEGLIGIBLE
+            ):
                 self.reset()
         return out
 
@@ -178,7 +190,8 @@ class SquealIntegrator:
             raise ValueError(f"excitation_n has the shape {excitation.shape}; give ({n_out}, {self.n_pads})")
         return excitation
 
-    # -- state -----------------------------------------------------------------------------------------------------
+    # -- state
+    # -----------------------------------------------------------------------------------------------------
 
     def memory(self) -> dict[str, Array]:
         """Return a copy of everything that changes; `restore` continues from it bit for bit."""
@@ -194,7 +207,7 @@ class SquealIntegrator:
         """(2 n_dof,) displacements and velocities from the steadily sliding state (m, rad, m/s, rad/s)."""
         m, c = self._memory, self._coefficients
         eta = m.modes[0] + 1j * m.modes[1]
-        if m.flags[1] != kernels.FRESH:
+        if m.flags[1] != contact.FRESH:
             eta = eta + np.vstack([m.present, m.history]).ravel() @ (c.history_r + 1j * c.history_i)
         return (self._system.vectors @ eta[: len(self._system.eigenvalues)]).real
 
@@ -209,7 +222,7 @@ class SquealIntegrator:
         eta = self._system.inverse @ state
         self._memory.modes[0, : len(eta)], self._memory.modes[1, : len(eta)] = eta.real, eta.imag
         self._memory.contact[:] = self._system.contact_rows @ state
-        self._memory.flags[1] = kernels.FRESH
+        self._memory.flags[1] = contact.FRESH
 
 
 def compile_kernels(spec: BrakeSpec | None = None) -> None:
@@ -221,30 +234,32 @@ def compile_kernels(spec: BrakeSpec | None = None) -> None:
         integrator = SquealIntegrator(Brake(spec), outputs=())
         integrator.advance(1, normal_force_n=(1.0, 1.0), mu=(0.4, 0.4), slip_m_s=(1.0, 1.0))
         return
-    shape, depth = MODE_BLOCK, kernels.DEPTH
+    shape, depth = MODE_BLOCK, contact.DEPTH
     two, four, eight = np.zeros((2, shape)), np.zeros((4, shape)), np.zeros((2 * depth, shape))
-    c = kernels.Coefficients(
+    c = contact.Coefficients(
         1, 1, 0.4, np.ones(2), two, two, two, two, two, eight, eight, four, four, four, four,
         np.zeros((4, depth, 2)), np.zeros((4, 2)), two, two, two, two, two, np.eye(4, 2), two, two,
         np.zeros((2, depth, 2)), np.zeros((2, 2)),
     )  # fmt: skip
-    m = kernels.Memory(np.zeros((2, shape)), np.zeros((kernels.PAST, 2)), np.zeros(2), np.zeros(4), np.zeros(2))
-    m.flags[0] = kernels.CALM
+    m = contact.Memory(
+        np.zeros((2, shape)), np.zeros((contact.PAST, 2)), np.zeros(2), np.zeros(4), np.zeros(2)
+    )
+    m.flags[0] = contact.CALM
     kernels.advance_pair(c, m, np.ones((4, 2)), 0.0, np.zeros((0, 2)), np.zeros((1, 2)))
 
 
 def _coefficients(
     brake: Brake, system: ModalSystem, outputs: tuple[str, ...], step_s: float, substeps: int, fine_steps: int
-) -> kernels.Coefficients:
+) -> contact.Coefficients:
     form = multistep_form(system, step_s)
     if np.abs(form.rotation).min() < _FASTEST_DECAY:
         raise ValueError(
-            f"brake '{brake.name}': a mode decays within one internal step of {step_s:.2e} s; raise substeps or lower "
-            "the damping of the coupling that causes it"
+            f"brake '{brake.name}': a mode decays within one internal step of {step_s:.2e} s; "
+            "raise substeps or lower the damping of the coupling that causes it"
         )
     fine_s = step_s / fine_steps
     fine = hold_weights(system.eigenvalues, fine_s, np.array([0.0, 1.0]))[:, :, None] * system.inputs
-    contact = system.contact_rows @ system.vectors
+    contacts = system.contact_rows @ system.vectors
     state_rows, direct = output_rows(brake, system, outputs)
     output = state_rows @ system.vectors
     padded = max(1, -(-len(system.eigenvalues) // MODE_BLOCK)) * MODE_BLOCK
@@ -252,7 +267,7 @@ def _coefficients(
 
     def columns(values: Complex) -> tuple[Array, Array]:
         """(rows, m) inputs to the modes, padded."""
-        wide = np.zeros((values.shape[0], padded), dtype=complex)
+        wide: Complex = np.zeros((values.shape[0], padded), dtype=complex)
         wide[:, : values.shape[1]] = values
         return np.ascontiguousarray(wide.real), np.ascontiguousarray(wide.imag)
 
@@ -266,11 +281,11 @@ def _coefficients(
         return np.ascontiguousarray(np.einsum("rm,dmg->rdg", values, form.history).real)
 
     # c z[n+1] = c (E s[n] + beta g[n]) + c R_0 g[n+1] + c R_1 g[n] + ..., with g[n+1] extrapolated
-    late = past(contact)
+    late = past(contacts)
     ahead_history = EXTRAPOLATION[None, :, None] * late[:, :1, :]
     ahead_history[:, :-1, :] += late[:, 1:, :]
-    ahead_history[:, 0, :] += (contact @ form.drive).real
-    return kernels.Coefficients(
+    ahead_history[:, 0, :] += (contacts @ form.drive).real
+    return contact.Coefficients(
         substeps,
         fine_steps,
         system.mu_ref,
@@ -279,14 +294,14 @@ def _coefficients(
         *columns(form.drive.T),
         *columns(form.hold.T),
         *columns(history),
-        *rows(contact),
-        *rows(contact * form.rotation),
+        *rows(contacts),
+        *rows(contacts * form.rotation),
         ahead_history,
-        np.ascontiguousarray((contact @ form.hold).real),
+        np.ascontiguousarray((contacts @ form.hold).real),
         np.vstack(columns(np.exp(system.eigenvalues * fine_s)[None, :])),
         *columns(fine[0].T),
         *columns(fine[1].T),
-        np.ascontiguousarray((contact @ fine[1]).real),
+        np.ascontiguousarray((contacts @ fine[1]).real),
         *rows(output),
         past(output),
         np.ascontiguousarray(direct),

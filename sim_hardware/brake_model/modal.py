@@ -1,13 +1,14 @@
 """Exact propagation of the linear brake in complex modes, with the friction deviation as input.
 
-The linear brake (constant mu_ref, no falling slope) is x' = A x + B g, with one input g per friction group: contacts
-that slide along the same direction of motion (the two contacts of a rigid pad) share one scalar friction force. In
-modes eta = V^-1 x each equation is eta' = lambda eta + b g and is integrated exactly for a polynomial g(t).
+The linear brake (constant mu_ref, no falling slope) is x' = A x + B g, with one input g per friction group:
+contacts that slide along the same direction of motion (the two contacts of a rigid pad) share one scalar
+friction force. In modes eta = V^-1 x each equation is eta' = lambda eta + b g and is integrated exactly for a
+polynomial g(t).
 
-Main step (exponential Adams-Moulton, predicted once): g(t) over the step is the polynomial through its new value and
-the last four; the new value is the friction law at the contact motion predicted with g extrapolated through the last
-four. The prediction error enters only through what one step of friction does to the slip, about 1e-3 of it, so that the
-law is evaluated once per step and the accuracy is that of the implicit method:
+Main step (exponential Adams-Moulton, predicted once): g(t) over the step is the polynomial through its new
+value and the last four; the new value is the friction law at the contact motion predicted with g extrapolated
+through the last four. The prediction error enters only through what one step of friction does to the slip,
+about 1e-3 of it, so that the law is evaluated once per step and the accuracy is that of the implicit method:
 
     eta[n+1] = E eta[n] + W_new g[n+1] + sum_i W_i g[n-i],  i = 0..3
 
@@ -15,8 +16,8 @@ and with s = eta - sum_i R_i g[n-i], i = 0..3, the same recursion needs one inpu
 
     s[n+1] = E s[n] + beta g[n],   R_0 = W_new,   W_0 = beta + R_1 - E R_0,   W_i = R_(i+1) - E R_i
 
-so that the high order costs no more than a low one. Fine step (around slip reversals): g linear over the step between
-its two ends (first-order hold), the end value implicit.
+so that the high order costs no more than a low one. Fine step (around slip reversals): g linear over the step
+between its two ends (first-order hold), the end value implicit.
 NOT its job: the friction law, the recursion itself (`kernels`), choice of outputs (`outputs`).
 """
 
@@ -58,7 +59,9 @@ def friction_groups(brake: Brake) -> tuple[FrictionGroup, ...]:
     groups: list[list[Element]] = []
     for contact in brake.contacts:
         for group in groups:
-            if group[0].pad == contact.pad and np.allclose(group[0].row_x, contact.row_x, rtol=1e-12, atol=1e-15):
+            if group[0].pad == contact.pad and np.allclose(
+                group[0].row_x, contact.row_x, rtol=1e-12, atol=1e-15
+            ):
                 group.append(contact)
                 break
         else:
@@ -78,7 +81,8 @@ class ModalSystem:
     vectors : (2 n_dof, m) state = Re(vectors @ eta), weights included
     inverse : (m, 2 n_dof) eta = inverse @ state
     inputs : (m, n_groups) b
-    contact_rows : (2 n_groups, 2 n_dof) slip variation (m/s) and compression variation (N) of each group from the state
+    contact_rows : (2 n_groups, 2 n_dof) slip variation (m/s) and compression variation (N) of each group from
+        the state
     """
 
     mu_ref: float
@@ -111,15 +115,17 @@ def modal_system(brake: Brake, mu_ref: float) -> ModalSystem:
         for contact in group.contacts:
             rows[2 * index + 1, :n] += contact.side * contact.stiffness_n_m[1] * contact.row_y
             rows[2 * index + 1, n:] += contact.side * contact.damping_ns_m[1] * contact.row_y
-    values, vectors = np.linalg.eig(matrix)
+    decomposition = np.linalg.eig(matrix)
+    values: Complex = decomposition[0].astype(complex)
+    vectors: Complex = decomposition[1].astype(complex)
     scaled = vectors / np.linalg.norm(vectors, axis=0)
     # displacements and velocities differ by the frequency: judge the condition on balanced vectors
     balance = np.concatenate([np.full(n, np.abs(values).max()), np.ones(n)])
     condition = np.linalg.cond(balance[:, None] * scaled / np.linalg.norm(balance[:, None] * scaled, axis=0))
     if not np.isfinite(condition) or condition > _WORST_CONDITION:
         raise ValueError(
-            f"the brake '{brake.name}' at mu = {mu_ref:g} has no complete set of modes (condition {condition:.1e}); "
-            "hold every body by a spring, or choose a slightly different mu_ref"
+            f"the brake '{brake.name}' at mu = {mu_ref:g} has no complete set of modes "
+            f"(condition {condition:.1e}); hold every body by a spring, or choose a slightly different mu_ref"
         )
     inverse = np.linalg.inv(vectors)
     kept = values.imag >= 0.0
@@ -158,7 +164,9 @@ def moments(exponent: Complex, count: int) -> Complex:
         forward = np.exp(x)
         phi[0] = forward
         for order in range(count):
-            forward = np.where(small, phi_small[order + 1], (phi[order] - 1.0 / factorial(order)) / np.where(small, 1.0, x))
+            forward = np.where(
+                small, phi_small[order + 1], (phi[order] - 1.0 / factorial(order)) / np.where(small, 1.0, x)
+            )
             phi[order + 1] = forward
     return np.stack([factorial(m) * phi[m + 1] for m in range(count)])
 
@@ -176,7 +184,9 @@ def hold_weights(eigenvalues: Complex, step_s: float, nodes: Array) -> Complex:
     -------
     (k, m) : eta(end) = exp(lambda step) eta(start) + b * sum_i weights[i] g(nodes[i])
     """
-    basis = np.linalg.inv(np.vander(nodes, increasing=True))  # column i: coefficients of the Lagrange polynomial i
+    basis = np.linalg.inv(
+        np.vander(nodes, increasing=True)
+    )  # column i: coefficients of the Lagrange polynomial i
     return step_s * (basis.T @ moments(eigenvalues * step_s, len(nodes)))
 
 
@@ -184,7 +194,8 @@ def hold_weights(eigenvalues: Complex, step_s: float, nodes: Array) -> Complex:
 class MultistepForm:
     """Coefficients of the main step in the s form (module docstring), per mode.
 
-    rotation : (m,) E; drive : (m, n_groups) beta; history : (4, m, n_groups) R; hold : (m, n_groups) for a constant input
+    rotation : (m,) E; drive : (m, n_groups) beta; history : (4, m, n_groups) R; hold : (m, n_groups) for a
+        constant input
     """
 
     rotation: Complex

@@ -1,11 +1,12 @@
 """Named outputs of the time integrator as rows over state and friction inputs.
 
-    "disc.y"                          acceleration of a degree of freedom (m/s2, rad/s2); also "disc.y:acceleration"
-    "disc.y:velocity", ":displacement"  m/s, m (rad/s, rad), from the steadily sliding state
-    "piston_l:force_x", ":force_y"    force of a coupling element on its second body (N), deviation from the mean;
+    "disc.y"                          acceleration of a degree of freedom (m/s2, rad/s2); also
+    "disc.y:acceleration" "disc.y:velocity", ":displacement"  m/s, m (rad/s, rad), from the steadily sliding
+    state "piston_l:force_x", ":force_y"    force of a coupling element on its second body (N), deviation from
+    the mean;
                                       at a contact only force_y (friction is one scalar per pad)
-    "inner_pad:friction", ":normal"   friction force on the pad along x, compression force (N), deviation from the mean
-    "inner_pad:slip"                  pad minus disc velocity along x (m/s)
+    "inner_pad:friction", ":normal"   friction force on the pad along x, compression force (N), deviation from
+    the mean "inner_pad:slip"                  pad minus disc velocity along x (m/s)
 
 NOT its job: time integration, sound.
 """
@@ -38,7 +39,7 @@ def output_rows(brake: Brake, system: ModalSystem, names: tuple[str, ...]) -> tu
     return state, direct
 
 
-def _row(brake: Brake, system: ModalSystem, name: str) -> tuple[Array, Array]:
+def _row(brake: Brake, system: ModalSystem, name: str) -> tuple[Array, Array]:  # noqa: PLR0911 (one per kind)
     what, _, quantity = name.partition(":")
     n = brake.n_dof
     none = np.zeros(len(system.groups))
@@ -66,7 +67,8 @@ def _row(brake: Brake, system: ModalSystem, name: str) -> tuple[Array, Array]:
         return system.mu_ref * normal, np.isin(np.arange(len(none)), members).astype(float)
     pads = sorted({group.pad for group in system.groups})
     raise KeyError(
-        f"unknown output {name!r}; use a degree of freedom ({', '.join(brake.freedoms)}) with :acceleration, :velocity or "
-        f":displacement, a coupling ({', '.join(e.name for e in brake.elements)}) with :force_x or :force_y (contacts: "
-        f":force_y), or a pad ({', '.join(pads)}) with :friction, :normal or :slip"
+        f"unknown output {name!r}; use a degree of freedom ({', '.join(brake.freedoms)}) with "
+        ":acceleration, :velocity or :displacement, a coupling "
+        f"({', '.join(e.name for e in brake.elements)}) with :force_x or :force_y (contacts: :force_y), "
+        f"or a pad ({', '.join(pads)}) with :friction, :normal or :slip"
     )

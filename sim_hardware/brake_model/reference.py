@@ -1,8 +1,9 @@
-"""Slow, tight time integration of the same brake by a general-purpose method: what the fast one is measured against.
+"""Slow, tight time integration of the same brake by a general-purpose method: what the fast one is measured
+against.
 
-Written from the coupling table element by element (eqs 6-17), per contact, in displacements and velocities: no modes,
-no matrices, nothing shared with `kernels`. Valid while all pads slide forwards and no pad lifts off: set-valued friction
-is not for a smooth method; `motion` refuses to return a motion that left this range.
+Written from the coupling table element by element (eqs 6-17), per contact, in displacements and velocities:
+no modes, no matrices, nothing shared with `kernels`. Valid while all pads slide forwards and no pad lifts
+off: set-valued friction is not for a smooth method; `motion` refuses to return a motion that left this range.
 NOT its job: speed.
 """
 
@@ -41,7 +42,8 @@ class ReferenceModel:
             [row for e in brake.elements for row in (e.row_x, e.row_y)] + [t.row for t in brake.torsions]
         )
         self._stiffness = np.array(
-            [c for e in brake.elements for c in e.stiffness_n_m] + [t.stiffness_nm_rad for t in brake.torsions]
+            [c for e in brake.elements for c in e.stiffness_n_m]
+            + [t.stiffness_nm_rad for t in brake.torsions]
         )
         self._damping = np.array(
             [d for e in brake.elements for d in e.damping_ns_m] + [t.damping_nms_rad for t in brake.torsions]
@@ -52,7 +54,8 @@ class ReferenceModel:
         self._mean_force = np.array([brake.elements[i].load_share for i in contacts]) * point.pad_force_n
 
     def friction(self, strain_rate: Array, forces: Array) -> tuple[Array, Array, Array]:
-        """Friction deviation, sliding speed and normal force of every contact, from rates and forces of all lines."""
+        """Friction deviation, sliding speed and normal force of every contact, from rates and forces of all
+        lines."""
         point = self.point
         speed = point.slip_m_s - strain_rate[self._slip_lines]
         normal = self._mean_force + self._side * forces[self._slip_lines + 1]
@@ -89,7 +92,7 @@ def motion(
     ArithmeticError
         the solver failed, or a contact reversed its slip or lifted off
     """
-    from scipy.integrate import solve_ivp  # noqa: PLC0415 (scipy only where it is used)
+    from scipy.integrate import solve_ivp
 
     model = ReferenceModel(brake, point)
     solution = solve_ivp(
@@ -105,6 +108,7 @@ def motion(
         speed, normal = min(speed, float(speeds.min())), min(normal, float(normals.min()))
     if speed <= 0.0 or normal < 0.0:
         raise ArithmeticError(
-            f"the motion left the range of the reference: least slip {speed:.3g} m/s, least contact force {normal:.3g} N"
+            f"the motion left the range of the reference: least slip {speed:.3g} m/s, "
+            f"least contact force {normal:.3g} N"
         )
     return states

@@ -1,8 +1,8 @@
 """A vector of 16 doubles as a numba value: load, store, multiply-add, horizontal sum.
 
-Numba's loops over short arrays pay for alias checks in every time step and are often not vectorised at all. With these
-intrinsics the modes of the brake stay in vector registers for the whole run; LLVM splits the 16 lanes into what the
-machine has (4 x AVX2, 2 x AVX-512, 8 x NEON).
+Numba's loops over short arrays pay for alias checks in every time step and are often not vectorised at all.
+With these intrinsics the modes of the brake stay in vector registers for the whole run; LLVM splits the 16
+lanes into what the machine has (4 x AVX2, 2 x AVX-512, 8 x NEON).
 NOT its job: anything about brakes.
 """
 
@@ -61,7 +61,9 @@ def store(typing_context: Any, array: Any, row: Any, value: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         row_index = context.cast(builder, args[1], signature.args[1], types.intp)
-        instruction = builder.store(args[2], _pointer(context, builder, signature.args[0], args[0], row_index))
+        instruction = builder.store(
+            args[2], _pointer(context, builder, signature.args[0], args[0], row_index)
+        )
         instruction.align = 8
         return context.get_dummy_value()
 
@@ -119,7 +121,9 @@ def scale_add(typing_context: Any, a: Any, factor: Any, c: Any) -> Any:
     """Return a * factor + c by lanes, with a scalar factor."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fadd(builder.fmul(args[0], _splat(builder, args[1]), flags=_FAST), args[2], flags=_FAST)
+        return builder.fadd(
+            builder.fmul(args[0], _splat(builder, args[1]), flags=_FAST), args[2], flags=_FAST
+        )
 
     return vector16(a, types.float64, c), code
 
@@ -130,7 +134,8 @@ def total(typing_context: Any, a: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         function = builder.module.declare_intrinsic(
-            f"llvm.vector.reduce.fadd.v{LANES}f64", fnty=ir.FunctionType(ir.DoubleType(), [ir.DoubleType(), _VECTOR])
+            f"llvm.vector.reduce.fadd.v{LANES}f64",
+            fnty=ir.FunctionType(ir.DoubleType(), [ir.DoubleType(), _VECTOR]),
         )
         return builder.call(function, [ir.Constant(ir.DoubleType(), 0.0), args[0]], fastmath=_FAST)
 

@@ -1,9 +1,9 @@
 """The brake file (TOML) as frozen, validated data: parameters, bodies, points, coupling tables g and h.
 
 Topology is data: bodies, connecting points and couplings may be added or removed by editing the file only.
-Refused with place, value and remedy: unknown keys, parameters that are unknown, not finite, never used or of the wrong
-unit for their use, masses that are not positive, couplings to unknown points, points that no coupling uses (a coupling
-is missing), pads whose contacts do not carry the whole pad force.
+Refused with place, value and remedy: unknown keys, parameters that are unknown, not finite, never used or of
+the wrong unit for their use, masses that are not positive, couplings to unknown points, points that no
+coupling uses (a coupling is missing), pads whose contacts do not carry the whole pad force.
 NOT its job: mechanics (`assembly`), or turning pydantic's error into one line for the user (`rigctl.config`).
 """
 
@@ -87,7 +87,9 @@ class Body(_Frozen):
     @model_validator(mode="after")
     def _complete(self) -> Self:
         if len(set(self.freedoms)) != len(self.freedoms):
-            raise refuse("a freedom is named twice", place="freedoms", value=self.freedoms, remedy="name it once")
+            raise refuse(
+                "a freedom is named twice", place="freedoms", value=self.freedoms, remedy="name it once"
+            )
         for key, needed in (("mass", {"x", "y"}), ("inertia", {"phi"})):
             given, moves = getattr(self, key) is not None, bool(needed & set(self.freedoms))
             if given != moves:
@@ -140,10 +142,11 @@ class Spring(_Frozen):
 
 
 class Contact(_Frozen):
-    """Entry of table g: friction contact of a pad (first) with the disc (second), normal along y, friction along x.
+    """Entry of table g: friction contact of a pad (first) with the disc (second), normal along y, friction
+    along x.
 
-    `side` is +1 where +y presses the pad on the disc (inner pad), -1 where -y does (outer pad); `load_share` is the
-    part of the pad's normal force that this contact point carries.
+    `side` is +1 where +y presses the pad on the disc (inner pad), -1 where -y does (outer pad); `load_share`
+    is the part of the pad's normal force that this contact point carries.
     """
 
     kind: Literal["contact"]
@@ -200,7 +203,9 @@ class BrakeSpec(_Frozen):
         """Return the same brake with other parameter values, validated again."""
         unknown = sorted(set(changes) - set(self.parameters))
         if unknown:
-            raise KeyError(f"unknown parameter {unknown[0]!r}; the brake has: {', '.join(sorted(self.parameters))}")
+            raise KeyError(
+                f"unknown parameter {unknown[0]!r}; the brake has: {', '.join(sorted(self.parameters))}"
+            )
         data = self.model_dump()
         for name, value in changes.items():
             data["parameters"][name]["value"] = float(value)
@@ -258,7 +263,7 @@ class BrakeSpec(_Frozen):
                 f"parameter '{name}' is used nowhere",
                 place=f"parameters.{name}",
                 value=self.parameters[name].value,
-                remedy="use it in a body, point or coupling, or remove it: a change of it would have no effect",
+                remedy="use it in a body, point or coupling, or remove it: changing it would do nothing",
             )
 
     def _check_pads(self) -> None:
@@ -280,7 +285,7 @@ class BrakeSpec(_Frozen):
                     f"the contacts of '{pad}' carry {share:g} of the pad force instead of 1",
                     place="couplings: load_share",
                     value=share,
-                    remedy="a contact is missing or its load_share is wrong: the shares of a pad must add up to 1",
+                    remedy="a contact is missing or a load_share is wrong: those of a pad must add up to 1",
                 )
 
 
@@ -342,7 +347,9 @@ def _expect(quantity: Quantity, unit: str, *, place: str, sign: str | None, text
 def _unique(place: str, names: Iterable[str]) -> None:
     for name, count in Counter(names).items():
         if count > 1:
-            raise refuse(f"'{name}' is given {count} times", place=place, value=name, remedy="give each its own name")
+            raise refuse(
+                f"'{name}' is given {count} times", place=place, value=name, remedy="give each its own name"
+            )
 
 
 def _unknown(what: str, name: str, place: str, known: Iterable[str]) -> Exception:

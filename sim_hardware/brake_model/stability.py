@@ -1,4 +1,5 @@
-"""Stability of the steadily sliding brake: eigenvalues of A (eq 27), onset of squeal over pressure or friction.
+"""Stability of the steadily sliding brake: eigenvalues of A (eq 27), onset of squeal over pressure or
+friction.
 
 NOT its job: time integration, sensitivities (eqs 24, 25), printing.
 """
@@ -56,7 +57,8 @@ class Onset:
 
 @dataclass(frozen=True)
 class Prediction:
-    """What the model predicts: pairs without pressure and at `pressure_max_bar`, onset or None where stable."""
+    """What the model predicts: pairs without pressure and at `pressure_max_bar`, onset or None where
+    stable."""
 
     brake: str
     mu: float
@@ -83,8 +85,8 @@ def eigen_pairs(
     mu, slope_s_m : coefficient of friction and falling slope k (s/m); the brake file's where None
     pressure_bar : brake pressure; acts only with k > 0
     """
-    values = np.linalg.eigvals(brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR))
-    return _pairs(values)
+    matrix = brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR)
+    return _pairs(np.linalg.eigvals(matrix).astype(complex))
 
 
 def onset_pressure(
@@ -95,7 +97,8 @@ def onset_pressure(
     *,
     steps: int = 100,
 ) -> Onset | None:
-    """Return the lowest pressure (bar) at which a pair becomes unstable, or None where stable through the range.
+    """Return the lowest pressure (bar) at which a pair becomes unstable, or None where stable through the
+    range.
 
     The range from 0 is scanned in `steps` steps and the first change of sign refined.
     """
@@ -105,10 +108,17 @@ def onset_pressure(
 
 
 def onset_mu(
-    brake: Brake, slope_s_m: float | None = None, pressure_bar: float = 0.0, mu_max: float = 1.0, *, steps: int = 100
+    brake: Brake,
+    slope_s_m: float | None = None,
+    pressure_bar: float = 0.0,
+    mu_max: float = 1.0,
+    *,
+    steps: int = 100,
 ) -> Onset | None:
     """Return the lowest coefficient of friction at which a pair becomes unstable, or None up to `mu_max`."""
-    return _first_crossing(lambda mu: brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR), mu_max, steps)
+    return _first_crossing(
+        lambda mu: brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR), mu_max, steps
+    )
 
 
 def predict(

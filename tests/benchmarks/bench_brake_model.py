@@ -1,9 +1,10 @@
-"""Speed and error of the brake model's time integration; run by hand: python tests/benchmarks/bench_brake_model.py
+"""Speed and error of the brake model's time integration; run by hand: python
+tests/benchmarks/bench_brake_model.py
 
-Squeal of the plant at 20 bar, blocks of 50 ms, four outputs, roughness excitation: times real time and nanoseconds per
-internal step (median and best of the blocks, one core), with the squeal's frequency and level error against 640 kHz, the
-largest velocity error over 5 ms of limit cycle against DOP853 at rtol 1e-10, and general-purpose integrators as peers.
-Other load on the machine slows the medians: look at ratios.
+Squeal of the plant at 20 bar, blocks of 50 ms, four outputs, roughness excitation: times real time and
+nanoseconds per internal step (median and best of the blocks, one core), with the squeal's frequency and level
+error against 640 kHz, the largest velocity error over 5 ms of limit cycle against DOP853 at rtol 1e-10, and
+general-purpose integrators as peers. Other load on the machine slows the medians: look at ratios.
 """
 
 import math
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
+
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.friction import SaturatingFriction
 from sim_hardware.brake_model.integrator import SquealIntegrator, compile_kernels
@@ -43,7 +45,9 @@ def squeal(substeps: int, start: np.ndarray) -> tuple[float, float]:
     return (i + 0.5 * (a - c) / (a - 2 * b + c)) * RATE / (1 << 20), 20.0 * math.log10(signal.std())
 
 
-def block_times(start: np.ndarray, substeps: int, slip: float = SLIP, saturation: float | None = SATURATION) -> np.ndarray:
+def block_times(
+    start: np.ndarray, substeps: int, slip: float = SLIP, saturation: float | None = SATURATION
+) -> np.ndarray:
     """Seconds for each of 60 blocks of 50 ms."""
     integrator = SquealIntegrator(PLANT, substeps=substeps, outputs=OUTPUTS)
     integrator.state = start
@@ -77,17 +81,22 @@ def main() -> None:
     for substeps in (1, 2, 4, 8):
         times = block_times(start, substeps)
         frequency, level = squeal(substeps, start)
-        integrator = SquealIntegrator(PLANT, substeps=substeps, outputs=[f"{f}:velocity" for f in PLANT.freedoms])
+        integrator = SquealIntegrator(
+            PLANT, substeps=substeps, outputs=[f"{f}:velocity" for f in PLANT.freedoms]
+        )
         integrator.state = start
         error = np.abs(integrator.advance(len(grid), **POINT) - tight).max() / np.abs(tight).max()
         per_step = times / (BLOCK * substeps) * 1e9
         print(
             f"{RATE * substeps / 1000:12.0f}  {0.05 / np.median(times):6.1f} {0.05 / times.min():6.1f}  "
-            f"{np.median(per_step):7.1f} {per_step.min():6.1f}  {frequency - finest[0]:+12.4f}  {level - finest[1]:+9.4f}"
-            f"   {error:.1e}"
+            f"{np.median(per_step):7.1f} {per_step.min():6.1f}  {frequency - finest[0]:+12.4f}  "
+            f"{level - finest[1]:+9.4f}   {error:.1e}"
         )
     times = block_times(start, 1, slip=0.02, saturation=None)
-    print(f"with slip reversal in every cycle (0.02 m/s, linear law), 40 kHz: {0.05 / np.median(times):.1f} x real time")
+    print(
+        f"with slip reversal in every cycle (0.02 m/s, linear law), 40 kHz: "
+        f"{0.05 / np.median(times):.1f} x real time"
+    )
     print("\npeers, numpy right-hand side, rtol 1e-6")
     for method in ("RK45", "DOP853", "LSODA"):
         model = ReferenceModel(PLANT, point)
@@ -95,10 +104,14 @@ def main() -> None:
         solution = solve_ivp(model, (0.0, grid[-1]), start, method=method, t_eval=grid, rtol=1e-6, atol=1e-12)
         seconds = time.perf_counter() - begin
         error = np.abs(solution.y[PLANT.n_dof :].T - tight).max() / np.abs(tight).max()
-        print(f"{method:12s}  {grid[-1] / seconds:.4f} x real time, velocity error {error:.1e}, {model.evaluations} calls")
+        print(
+            f"{method:12s}  {grid[-1] / seconds:.4f} x real time, velocity error {error:.1e}, "
+            f"{model.evaluations} calls"
+        )
     begin = time.perf_counter()
     predict(PLANT)
-    print(f"\nstability over 0 to 25 bar (101 pressures, onset refined): {(time.perf_counter() - begin) * 1e3:.0f} ms")
+    milliseconds = (time.perf_counter() - begin) * 1e3
+    print(f"\nstability over 0 to 25 bar (101 pressures, onset refined): {milliseconds:.0f} ms")
 
 
 if __name__ == "__main__":

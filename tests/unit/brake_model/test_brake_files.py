@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
+
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.expressions import UNITS, Dimension, Quantity, evaluate
 from sim_hardware.brake_model.spec import BrakeSpec, load_spec
@@ -64,7 +65,10 @@ def test_unknown_keys_are_refused_everywhere() -> None:
     ("change", "words"),
     [
         (lambda b: b["parameters"]["c_tie"].update(unit="N/mm"), ["unit", "N/mm"]),
-        (lambda b: b["parameters"]["c_tie"].update(unit="N s/m"), ["'tie': stiffness_x", "N s/m", "N/m is needed"]),
+        (
+            lambda b: b["parameters"]["c_tie"].update(unit="N s/m"),
+            ["'tie': stiffness_x", "N s/m", "N/m is needed"],
+        ),
         (lambda b: b["parameters"]["m_disc"].update(unit="kg m2"), ["'disc': mass", "kg m2 where kg"]),
         (lambda b: b["parameters"]["y_disc"].update(unit="kg"), ["points", "kg where m is needed"]),
         (lambda b: b["operating"]["slope"].update(unit="1"), ["slope", "s/m"]),
@@ -72,12 +76,21 @@ def test_unknown_keys_are_refused_everywhere() -> None:
         (lambda b: b["parameters"]["m_disc"].update(value=-5.0), ["'disc': mass", "-5 kg", "positive"]),
         (lambda b: b["parameters"]["J_cal"].update(value=0.0), ["'caliper': inertia", "positive"]),
         (lambda b: b["parameters"]["d_tie"].update(value=-1.0), ["'tie': damping_x", "not negative"]),
-        (lambda b: b["couplings"].remove(entry(b, "couplings", "tie")), ["carrier_l.tie", "no coupling uses"]),
+        (
+            lambda b: b["couplings"].remove(entry(b, "couplings", "tie")),
+            ["carrier_l.tie", "no coupling uses"],
+        ),
         (lambda b: b["couplings"].remove(entry(b, "couplings", "contact_il")), ["no coupling uses"]),
         (lambda b: b.update(torsions=[]), ["c_disc_phi", "used nowhere"]),
         (lambda b: entry(b, "couplings", "tie").update(stiffness_x="c_tye"), ["'tie': stiffness_x", "c_tye"]),
-        (lambda b: entry(b, "couplings", "tie").update(between=["carrier_l.tie", "carrier_t.ti"]), ["carrier_t.ti"]),
-        (lambda b: entry(b, "couplings", "contact_il").update(load_share=0.4), ["inner_pad", "0.9", "instead of 1"]),
+        (
+            lambda b: entry(b, "couplings", "tie").update(between=["carrier_l.tie", "carrier_t.ti"]),
+            ["carrier_t.ti"],
+        ),
+        (
+            lambda b: entry(b, "couplings", "contact_il").update(load_share=0.4),
+            ["inner_pad", "0.9", "instead of 1"],
+        ),
         (lambda b: entry(b, "couplings", "tie").update(name="hub"), ["'hub'", "2 times"]),
         (lambda b: entry(b, "bodies", "disc").pop("inertia"), ["disc", "inertia"]),
         (lambda b: b["parameters"].update(x_new=dict(b["parameters"]["x_con"])), ["x_new", "used nowhere"]),
@@ -122,7 +135,8 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 
 def test_topology_is_data() -> None:
-    """A body and its couplings added by editing the file: one more degree of freedom, a new mode at its frequency."""
+    """A body and its couplings added by editing the file: one more degree of freedom, a new mode at its
+    frequency."""
     brake = data()
     brake["parameters"]["m_weight"] = {"value": 0.01, "unit": "kg", "origin": "test"}
     brake["parameters"]["c_weight"] = {"value": 1e4, "unit": "N/m", "origin": "test"}
@@ -132,7 +146,12 @@ def test_topology_is_data() -> None:
         {"body": "disc", "name": "weight", "x": "0", "y": "0"},
     ]
     brake["couplings"].append(
-        {"kind": "spring", "name": "glue", "between": ["weight.foot", "disc.weight"], "stiffness_y": "c_weight"}
+        {
+            "kind": "spring",
+            "name": "glue",
+            "between": ["weight.foot", "disc.weight"],
+            "stiffness_y": "c_weight",
+        }
     )
     wider = Brake(BrakeSpec.model_validate(brake))
     assert (wider.n_dof, len(wider.elements)) == (15, 19)

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.integrator import SquealIntegrator, compile_kernels
 
@@ -47,7 +48,9 @@ def test_same_input_gives_the_same_bits_and_calls_can_be_split() -> None:
     whole, split, again = (SquealIntegrator(PLANT, outputs=OUTPUTS) for _ in range(3))
     expected = whole.advance(600, **STEADY, excitation_n=push)
     np.testing.assert_array_equal(again.advance(600, **STEADY, excitation_n=push), expected)
-    parts = [split.advance(n, **STEADY, excitation_n=push[s : s + n]) for s, n in ((0, 1), (1, 199), (200, 400))]
+    parts = [
+        split.advance(n, **STEADY, excitation_n=push[s : s + n]) for s, n in ((0, 1), (1, 199), (200, 400))
+    ]
     np.testing.assert_array_equal(np.concatenate(parts), expected)
     assert expected[1:].any(axis=0).all()
     different = SquealIntegrator(PLANT, outputs=OUTPUTS).advance(600, **STEADY, excitation_n=noise(600, 2))
@@ -136,4 +139,6 @@ def test_runaway_is_reported() -> None:
     integrator.state = np.full(28, 1e-6)
     with pytest.raises(FloatingPointError, match="not finite"):
         for _ in range(100):
-            integrator.advance(40_000, **(STEADY | {"slip_m_s": (1e300, 1e300), "saturation_m_s": None, "k_s_m": (0.5, 0.5)}))
+            integrator.advance(
+                40_000, **(STEADY | {"slip_m_s": (1e300, 1e300), "saturation_m_s": None, "k_s_m": (0.5, 0.5)})
+            )

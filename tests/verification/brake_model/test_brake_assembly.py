@@ -1,7 +1,8 @@
-"""The assembled matrices against an independent derivation: Lagrange's equations with SymPy, topology written by hand.
+"""The assembled matrices against an independent derivation: Lagrange's equations with SymPy, topology written
+by hand.
 
-The derivation below shares nothing with `assembly` but the parameter values: energies, dissipation and the virtual work
-of friction are written from the drawing of the brake, then differentiated.
+The derivation below shares nothing with `assembly` but the parameter values: energies, dissipation and the
+virtual work of friction are written from the drawing of the brake, then differentiated.
 """
 
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
+
 from sim_hardware.brake_model.assembly import Brake, load_brake
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
@@ -28,7 +30,9 @@ def lagrange(brake: Brake, mu: float, k: float, pad_force_n: float) -> dict[str,
     masses = {"caliper": ("m_cal", "J_cal"), "inner": ("m_padi", "J_padi"), "disc": ("m_disc", "J_disc")}
     masses |= {"outer": ("m_pado", "J_pado"), "lead": ("m_cl", ""), "trail": ("m_ct", "")}
     kinetic = sum(
-        sp.Rational(1, 2) * p[masses[b][1 if f == "p" else 0]] * w[f"{b}_{f}"] ** 2 for b, fs in bodies.items() for f in fs
+        sp.Rational(1, 2) * p[masses[b][1 if f == "p" else 0]] * w[f"{b}_{f}"] ** 2
+        for b, fs in bodies.items()
+        for f in fs
     )
 
     # heights over the disc's mid-plane; centres of mass of pads at +-(y_disc + h_pad)
@@ -42,7 +46,9 @@ def lagrange(brake: Brake, mu: float, k: float, pad_force_n: float) -> dict[str,
 
     potential, dissipation = 0, 0
 
-    def couple(first: str, second: str, x: float, y: float, cx: float, cy: float, dx: float, dy: float) -> None:
+    def couple(
+        first: str, second: str, x: float, y: float, cx: float, cy: float, dx: float, dy: float
+    ) -> None:
         nonlocal potential, dissipation
         (ux, uy), (vx, vy) = (
             [a - b for a, b in zip(at(c, first, x, y), at(c, second, x, y), strict=True)] for c in (q, w)
@@ -62,11 +68,15 @@ def lagrange(brake: Brake, mu: float, k: float, pad_force_n: float) -> dict[str,
             )
             normal = side * (stiffness * uy + p["d_con"] * vy)  # compression force, variation
             force = mu * normal + k * (pad_force_n / 2) * vx  # mu(v0 - vx) = mu + k vx
-            for name in q:  # virtual work of the friction pair: force on the pad, reaction on the disc
-                work[name] += force * sp.diff(ux, q[name])
+            for (
+                name,
+                coordinate,
+            ) in q.items():  # virtual work of the friction pair: pad and reaction on the disc
+                work[name] += force * sp.diff(ux, coordinate)
             couple(
                 pad, "lead" if edge == "l" else "trail", sign * p["x_abu"], -side * (rear + p["a_pad"]),
-                p[f"c_abu_{edge}"], given(f"c_abu_y_{letter}{edge}", "c_abu_y"), p[f"d_abu_{edge}"], p["d_abu_y"],
+                p[f"c_abu_{edge}"], given(f"c_abu_y_{letter}{edge}", "c_abu_y"),
+                p[f"d_abu_{edge}"], p["d_abu_y"],
             )  # fmt: skip
             plate = ("pis", -1) if pad == "inner" else ("fin", 1)
             name, direction = plate
@@ -77,7 +87,8 @@ def lagrange(brake: Brake, mu: float, k: float, pad_force_n: float) -> dict[str,
     for half, edge, sign in (("lead", "l", -1), ("trail", "t", 1)):
         couple(
             "caliper", half, sign * p["x_gui"], p["y_gui"],
-            given(f"c_gui_x_{edge}", "c_gui_x"), given(f"c_gui_y_{edge}", "c_gui_y"), p["d_gui_x"], p["d_gui_y"],
+            given(f"c_gui_x_{edge}", "c_gui_x"), given(f"c_gui_y_{edge}", "c_gui_y"),
+            p["d_gui_x"], p["d_gui_y"],
         )  # fmt: skip
         couple(half, "ground", 0, 0, p[f"c_knu_{edge}"], 0, p["d_knu"], 0)
     couple("lead", "trail", 0, 0, p["c_tie"], 0, p["d_tie"], 0)
@@ -88,7 +99,9 @@ def lagrange(brake: Brake, mu: float, k: float, pad_force_n: float) -> dict[str,
     positions, rates = list(q.values()), list(w.values())
     everything = positions + rates
     lines = sp.lambdify(
-        everything, [sp.diff(potential, q[n]) + sp.diff(dissipation, w[n]) - work[n] for n in q], modules="math"
+        everything,
+        [sp.diff(potential, q[n]) + sp.diff(dissipation, w[n]) - work[n] for n in q],
+        modules="math",
     )
     both = np.array([lines(*unit) for unit in np.eye(len(everything)).tolist()]).T  # the equations are linear
     n = len(positions)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.spec import BrakeSpec
 from sim_hardware.brake_model.stability import eigen_pairs, onset_mu, onset_pressure, predict
@@ -14,8 +15,9 @@ BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 MODEL = load_brake(BRAKES / "model.toml")
 
 PRINTED_HZ_PERCENT = [
-    (688.4, 0.69), (914.7, 0.73), (1078.8, 0.65), (1359.8, 1.01), (2140.0, 1.11), (2278.6, 0.75), (2564.4, 1.08),
-    (2935.8, 1.26), (3244.7, 1.37), (4048.6, 1.33), (6459.0, 3.82), (7177.2, 3.90), (7673.0, 3.64), (8048.4, 3.88),
+    (688.4, 0.69), (914.7, 0.73), (1078.8, 0.65), (1359.8, 1.01), (2140.0, 1.11),
+    (2278.6, 0.75), (2564.4, 1.08), (2935.8, 1.26), (3244.7, 1.37), (4048.6, 1.33),
+    (6459.0, 3.82), (7177.2, 3.90), (7673.0, 3.64), (8048.4, 3.88),
 ]  # fmt: skip
 
 scatter = st.lists(st.floats(0.8, 1.25), min_size=60, max_size=60)
@@ -40,7 +42,9 @@ def test_model_squeals_from_15_bar_at_2140_hz() -> None:
 
 def test_model_pairs_as_identified() -> None:
     pairs = eigen_pairs(MODEL, mu=0.4, pressure_bar=0.0)
-    assert [(round(p.frequency_hz, 1), round(100.0 * p.damping_ratio, 2)) for p in pairs] == PRINTED_HZ_PERCENT
+    assert [
+        (round(p.frequency_hz, 1), round(100.0 * p.damping_ratio, 2)) for p in pairs
+    ] == PRINTED_HZ_PERCENT
 
 
 def test_friction_alone_does_not_destabilise_the_model() -> None:
@@ -131,11 +135,14 @@ def test_mirror_symmetry_makes_eigenvalues_independent_of_mu(factors: list[float
 
 
 def test_disc_x_is_inert_without_falling_friction() -> None:
-    """Constant friction on the two pads cancels nothing else: a heavier m_disc along x only matters with k > 0."""
+    """Constant friction on the two pads cancels nothing else: a heavier m_disc along x only matters with k >
+    0."""
     softer = MODEL.with_parameters(c_disc_x=3.0e8)
 
     def others(brake: Brake, k: float) -> list[float]:
-        own = np.sqrt(brake.spec.parameters["c_disc_x"].value / brake.spec.parameters["m_disc"].value) / (2 * np.pi)
+        own = np.sqrt(brake.spec.parameters["c_disc_x"].value / brake.spec.parameters["m_disc"].value) / (
+            2 * np.pi
+        )
         pairs = sorted(eigen_pairs(brake, 0.4, k, 15.0), key=lambda p: abs(p.frequency_hz - own))[1:]
         return sorted(p.real_part_1_s for p in pairs)
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.identify import identify, main, updated_text
 from sim_hardware.brake_model.stability import onset_pressure
@@ -10,7 +11,9 @@ from sim_hardware.brake_model.stability import onset_pressure
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 
 
-def test_disturbed_model_finds_15_bar_and_2140_hz_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_disturbed_model_finds_15_bar_and_2140_hz_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     model = load_brake(BRAKES / "model.toml")
     disturbed = {"c_fin_t": 0.9, "c_con_it": 1.08, "d_abu_t": 1.3, "d_fin_t": 1.3}
     values = {name: factor * model.spec.parameters[name].value for name, factor in disturbed.items()}
@@ -21,7 +24,14 @@ def test_disturbed_model_finds_15_bar_and_2140_hz_again(tmp_path: Path, capsys: 
     file = tmp_path / "start.toml"
     file.write_text(updated_text((BRAKES / "model.toml").read_text(), start, values, "disturbed"))
     out = tmp_path / "found.toml"
-    arguments = [str(file), "--target", "onset_bar=15", "frequency_hz=2140", "--free", "c_fin_t,c_con_it,d_abu_t,d_fin_t"]
+    arguments = [
+        str(file),
+        "--target",
+        "onset_bar=15",
+        "frequency_hz=2140",
+        "--free",
+        "c_fin_t,c_con_it,d_abu_t,d_fin_t",
+    ]
     assert main([*arguments, "--out", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "before: unstable" in printed
@@ -60,5 +70,13 @@ def test_nonsense_is_refused(arguments: list[str], message: str, capsys: pytest.
 
 
 def test_targets_out_of_reach_are_not_called_met(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = [str(BRAKES / "model.toml"), "--target", "onset_bar=5", "--free", "c_gui_y_l", "--band", "0.01"]
+    arguments = [
+        str(BRAKES / "model.toml"),
+        "--target",
+        "onset_bar=5",
+        "--free",
+        "c_gui_y_l",
+        "--band",
+        "0.01",
+    ]
     assert main(arguments) == 1

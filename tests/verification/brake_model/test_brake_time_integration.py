@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+
 from sim_hardware.brake_model import kernels
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.friction import LinearFriction, SaturatingFriction
@@ -22,7 +23,9 @@ K = 0.0576
 RATE = 40_000.0
 
 
-def at(brake: Brake, bar: float, mu: float = 0.4, k: float = K, slip: float = SLIP) -> dict[str, tuple[float, float]]:
+def at(
+    brake: Brake, bar: float, mu: float = 0.4, k: float = K, slip: float = SLIP
+) -> dict[str, tuple[float, float]]:
     """A constant working point as keyword arguments of `advance`."""
     force = brake.pad_force_n(bar * 1e5)
     return {"normal_force_n": (force, force), "mu": (mu, mu), "slip_m_s": (slip, slip), "k_s_m": (k, k)}
@@ -88,15 +91,21 @@ def test_before_the_limit_cycle_equals_tight_reference() -> None:
         PLANT, WorkingPoint(PLANT.pad_force_n(20e5), SLIP, law), start, np.arange(200) / RATE, atol=1e-18
     )
     for substeps, worst in ((1, 1e-2), (4, 1e-3)):
-        integrator = SquealIntegrator(PLANT, substeps=substeps, outputs=[f"{f}:displacement" for f in PLANT.freedoms])
+        integrator = SquealIntegrator(
+            PLANT, substeps=substeps, outputs=[f"{f}:displacement" for f in PLANT.freedoms]
+        )
         integrator.state = start
         actual = integrator.advance(200, **at(PLANT, 20.0, 0.45))
         scale = np.abs(expected[:, : PLANT.n_dof]).max()
         assert np.abs(actual - expected[:, : PLANT.n_dof]).max() / scale < worst
 
 
-@pytest.mark.parametrize(("bar", "mu", "mu_ref"), [(8.0, 0.4, 0.4), (14.0, 0.4, 0.4), (20.0, 0.55, 0.4), (20.0, 0.3, 0.4)])
-def test_growth_and_frequency_of_small_motion_equal_the_eigenvalue(bar: float, mu: float, mu_ref: float) -> None:
+@pytest.mark.parametrize(
+    ("bar", "mu", "mu_ref"), [(8.0, 0.4, 0.4), (14.0, 0.4, 0.4), (20.0, 0.55, 0.4), (20.0, 0.3, 0.4)]
+)
+def test_growth_and_frequency_of_small_motion_equal_the_eigenvalue(
+    bar: float, mu: float, mu_ref: float
+) -> None:
     """The squealing mode over 50 ms: growth within 0.1 1/s, frequency within 0.02 Hz."""
     values, vectors = np.linalg.eig(PLANT.state_matrix(mu, K, bar * 1e5))
     squeal = int(np.argmin(np.abs(values - 2350.0j * 2.0 * np.pi)))
@@ -130,7 +139,11 @@ def test_40_khz_keeps_squeal_frequency_and_level() -> None:
     for substeps in (1, 8):
         integrator = SquealIntegrator(PLANT, substeps=substeps, outputs=["inner_pad:slip"])
         integrator.state = start
-        found.append(frequency_and_level(integrator.advance(10_000, **at(PLANT, 20.0), saturation_m_s=0.01)[:, 0], RATE))
+        found.append(
+            frequency_and_level(
+                integrator.advance(10_000, **at(PLANT, 20.0), saturation_m_s=0.01)[:, 0], RATE
+            )
+        )
     assert found[0][0] == pytest.approx(found[1][0], abs=0.02)
     assert found[0][1] == pytest.approx(found[1][1], abs=0.01)
 
@@ -144,7 +157,9 @@ def test_changed_stiffness_moves_the_squeal_as_the_eigenvalue() -> None:
         integrator = SquealIntegrator(brake, outputs=["inner_pad:slip"])
         integrator.state = kicked(brake, 0.01)
         integrator.advance(60_000, **at(brake, 20.0), saturation_m_s=0.005)
-        squeal, _ = frequency_and_level(integrator.advance(10_000, **at(brake, 20.0), saturation_m_s=0.005)[:, 0], RATE)
+        squeal, _ = frequency_and_level(
+            integrator.advance(10_000, **at(brake, 20.0), saturation_m_s=0.005)[:, 0], RATE
+        )
         shifts.append((expected, squeal))
     (expected_before, before), (expected_after, after) = shifts
     assert abs(abs(expected_after) - abs(expected_before)) > 10.0
@@ -183,7 +198,9 @@ def test_vector_kernel_equals_general_kernel(slip: float) -> None:
     results = []
     for integrator in (fast, plain):
         integrator.state = kicked(PLANT, 0.05)
-        results.append(integrator.advance(800, **at(PLANT, 25.0, slip=slip), saturation_m_s=0.1, excitation_n=push))
+        results.append(
+            integrator.advance(800, **at(PLANT, 25.0, slip=slip), saturation_m_s=0.1, excitation_n=push)
+        )
     np.testing.assert_allclose(results[0], results[1], rtol=1e-6, atol=1e-6 * np.abs(results[1]).max())
 
 
@@ -233,8 +250,11 @@ def belt_oscillator() -> Brake:
     )
 
 
-def stick_slip_reference(brake: Brake, n: float, mu: float, k: float, v0: float, times: np.ndarray) -> np.ndarray:
-    """Displacement from the mean, phase by phase: slip until the mass has the belt's speed, stick until it tears off."""
+def stick_slip_reference(
+    brake: Brake, n: float, mu: float, k: float, v0: float, times: np.ndarray
+) -> np.ndarray:
+    """Displacement from the mean, phase by phase: slip until the mass has the belt's speed, stick until it
+    tears off."""
     m, c, d = (brake.spec.parameters[key].value for key in "mcd")
     holding = k * v0 * n  # what mu(0) holds beyond the mean friction force
     tear_off = (holding - d * v0) / c
@@ -265,7 +285,8 @@ def stick_slip_reference(brake: Brake, n: float, mu: float, k: float, v0: float,
 
 
 def test_stick_slip_of_the_belt_oscillator() -> None:
-    """Set-valued friction: the stick-slip cycle of the 1-DOF oscillator under eq 28 against its exact phases."""
+    """Set-valued friction: the stick-slip cycle of the 1-DOF oscillator under eq 28 against its exact
+    phases."""
     brake = belt_oscillator()
     n, mu, k, v0 = 1000.0, 0.4, 0.1, 0.3
     times = np.arange(2000) / RATE
@@ -284,12 +305,15 @@ def test_stick_slip_of_the_belt_oscillator() -> None:
 
 
 def test_slip_reversal_converges() -> None:
-    """The whole brake at a sliding speed that squeal reverses: finer steps change little, and the order is kept."""
+    """The whole brake at a sliding speed that squeal reverses: finer steps change little, and the order is
+    kept."""
     runs = {}
     for substeps in (1, 2, 8):
         integrator = SquealIntegrator(PLANT, substeps=substeps, outputs=["inner_pad:slip"], fine_steps=8)
         integrator.state = kicked(PLANT, 0.02)
-        signal = integrator.advance(30_000, **at(PLANT, 20.0, slip=0.02))[-8000:, 0]  # linear law: limited by reversal only
+        signal = integrator.advance(30_000, **at(PLANT, 20.0, slip=0.02))[
+            -8000:, 0
+        ]  # linear law: limited by reversal only
         runs[substeps] = frequency_and_level(signal, RATE)
         assert np.abs(signal).max() > 0.0199
     for substeps in (1, 2):
