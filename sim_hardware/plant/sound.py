@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from rigctl.core.errors import ConfigError
 from rigctl.core.units import M3_S_PER_M3_H, PA_PER_BAR, REFERENCE_PRESSURE_PA
@@ -184,6 +183,7 @@ def _amplitude_pa(level_db: float) -> float:
 
 def _filters(b: BackgroundSettings) -> Array:
     """Per noise: pole of the low pass, pole of the high pass or 0, gain to unit power; (3, 3)."""
+    back = np.exp(-1j * np.linspace(0.0, 2.0 * math.pi, SOUND_HZ, endpoint=False))  # z^-1 on the unit circle
     rows = []
     for low_hz, high_hz in (
         (b.background_corner_hz, 0.0),
@@ -192,12 +192,10 @@ def _filters(b: BackgroundSettings) -> Array:
     ):
         low = math.exp(-2.0 * math.pi * low_hz / SOUND_HZ)
         high = math.exp(-2.0 * math.pi * high_hz / SOUND_HZ) if high_hz > 0.0 else 0.0
-        impulse = np.zeros(SOUND_HZ // 4)
-        impulse[0] = 1.0
-        response = np.asarray(lfilter([1.0 - low], [1.0, -low], impulse))
+        response = (1.0 - low) / np.abs(1.0 - low * back)
         if high > 0.0:
-            response = np.asarray(lfilter([1.0, -1.0], [1.0, -high], response))
-        rows.append((low, high, _UNIFORM / math.sqrt(float(np.sum(response**2)))))
+            response = response * np.abs((1.0 - back) / (1.0 - high * back))
+        rows.append((low, high, _UNIFORM / math.sqrt(float(np.mean(response**2)))))
     return np.array(rows)
 
 

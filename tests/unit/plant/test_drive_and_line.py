@@ -86,7 +86,7 @@ def test_disabled_drive_coasts_and_quick_stop_ramps():
     assert coasting.plant.truth.speed_rpm == 0.0
 
 
-def test_power_limited_drive_needs_the_relay():
+def test_drive_needs_the_relay():
     rig = Rig()
     rig.run(1.0, speed_set_rpm=40.0, drive_enabled=True, relay_closed=False)
     assert rig.plant.truth.speed_rpm == 0.0 and not rig.plant.truth.relay_closed
