@@ -146,12 +146,14 @@ def advance_pair(  # noqa: PLR0915 (one loop: what is called in it would leave t
     share_a, share_b, mu_ref = c.share[0], c.share[1], c.mu_ref
     h, r = c.ahead_history, c.ahead_hold
     oh, od = c.output_history, c.output_direct
+    if m.flags[1] == FRESH:  # the modes get the friction history they lack
+        point(operation, 0.0, start)
+        present_g(c, m, start, inverse_saturation)
     zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
     a1, a2, a3 = m.history[0, 0], m.history[1, 0], m.history[2, 0]
     b1, b2, b3 = m.history[0, 1], m.history[1, 1], m.history[2, 1]
     da, na, db, nb = m.contact[0], m.contact[1], m.contact[2], m.contact[3]
     calm = m.flags[0] >= CALM
-    fresh = m.flags[1] == FRESH
     p0 = _product(c.ahead_r, c.ahead_i, 0, zr, zi) + _late(h, 0, a1, a2, a3, b1, b2, b3)
     p1 = _product(c.ahead_r, c.ahead_i, 1, zr, zi) + _late(h, 1, a1, a2, a3, b1, b2, b3)
     p2 = _product(c.ahead_r, c.ahead_i, 2, zr, zi) + _late(h, 2, a1, a2, a3, b1, b2, b3)
@@ -173,13 +175,6 @@ def advance_pair(  # noqa: PLR0915 (one loop: what is called in it would leave t
                 point(operation, (i * substeps + sub) / steps, start)
                 present_g(c, m, start, inverse_saturation)
                 ga, gb = m.present[0], m.present[1]
-                if fresh:
-                    zr, zi = simd.load(m.modes, 0), simd.load(m.modes, 1)
-                    p0 = _product(c.ahead_r, c.ahead_i, 0, zr, zi) + _late(h, 0, a1, a2, a3, b1, b2, b3)
-                    p1 = _product(c.ahead_r, c.ahead_i, 1, zr, zi) + _late(h, 1, a1, a2, a3, b1, b2, b3)
-                    p2 = _product(c.ahead_r, c.ahead_i, 2, zr, zi) + _late(h, 2, a1, a2, a3, b1, b2, b3)
-                    p3 = _product(c.ahead_r, c.ahead_i, 3, zr, zi) + _late(h, 3, a1, a2, a3, b1, b2, b3)
-                    fresh = False
             if sub == 0:
                 for o in range(n_outputs):
                     late_a = oh[o, 0, 0] * ga + oh[o, 1, 0] * a1 + oh[o, 2, 0] * a2 + oh[o, 3, 0] * a3
