@@ -8,7 +8,7 @@ as notes after the relay has been served. Not its job: carrying it out (`rigctl.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Final
@@ -53,6 +53,9 @@ class Note:
     rig_s: float | None
     payload: Mapping[str, Any]
     samples: tuple[SafetySample, ...] = field(default=())
+
+
+NOTHING: Final[tuple[Note, ...]] = ()
 
 
 class Guard:
@@ -154,8 +157,10 @@ class Guard:
         reason, self._open_reason = self._open_reason, None
         return reason
 
-    def take_notes(self) -> list[Note]:
+    def take_notes(self) -> Sequence[Note]:
         """What is to be journaled. To be asked for after the relay has been served."""
+        if not self._notes:
+            return NOTHING
         notes, self._notes = self._notes, []
         return notes
 

@@ -18,6 +18,7 @@ from rigctl.safety.limits import SetpointLimits
 
 CHECKPOINTS: Final = 0b1111  # block received, engine stepped, recorder told, set-points computed
 FIRST_NONCE: Final = 0
+SETPOINTS: Final = frozenset(("p", "n", "enable"))
 
 
 def answer_to(nonce: int, k: int, mask: int, limits_hash8: str) -> int:
@@ -35,7 +36,7 @@ def _is_finite(value: object) -> bool:
 
 def setpoint_fault(setpoints: object, limits: SetpointLimits) -> Cause | None:
     """K-24: what the controller commands must be known, finite and within limits. Zero always passes."""
-    if not isinstance(setpoints, Mapping) or set(setpoints) != {"p", "n", "enable"}:  # pyright: ignore[reportUnknownArgumentType]
+    if not isinstance(setpoints, dict) or setpoints.keys() != SETPOINTS:  # pyright: ignore[reportUnknownMemberType]
         return Cause("setpoint", detail="a heartbeat names p, n and enable, and nothing else")
     pressure: Any = setpoints["p"]
     speed: Any = setpoints["n"]
@@ -111,7 +112,10 @@ class HeartbeatMonitor:
                 "heartbeat_wrong", detail=f"limits {message.get('limits')!r} instead of {self._hash8!r}"
             )
         # Newest first; with the same nonce, number, mask and limits there is one right answer.
-        if not any(answer == answer_to(nonce, k, mask, self._hash8) for nonce in reversed(self._nonces)):
+        for nonce in reversed(self._nonces):
+            if answer == answer_to(nonce, k, mask, self._hash8):
+                break
+        else:
             return Cause("heartbeat_wrong", detail=f"block {k} does not answer the newest nonce")
         setpoints: Any = message.get("set")
         fault = setpoint_fault(setpoints, self._limits)

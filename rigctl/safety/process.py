@@ -124,6 +124,7 @@ class Watchdog:
             self._journal_told = True
             self._guard.journal_failed(self._evidence.failure, now_s)
         if self.terminate and not self._terminating:
+            self._drain_controller(now_s)
             self._on_terminate(now_s)
         self._serve()
         if self._controller is not None and self._guard.state is not State.TRIPPED and not self._rig_gone:
