@@ -1,6 +1,6 @@
 """Every state in which a crash can leave a campaign is recovered: nothing acknowledged is lost.
 
-Random kills miss most windows; here two brakings are recorded once, all calls on files are noted, and the
+Random kills miss most windows; here three brakings are recorded once, all calls on files are noted, and the
 campaign is rebuilt as it is after each of them: process killed, write torn in the middle, power lost.
 """
 
@@ -23,10 +23,17 @@ from rigctl.recording.commit import commit
 from rigctl.recording.recovery import recover
 from rigctl.recording.running import RunningBraking
 
-SECONDS = 0.4
+SECONDS = 0.2
 
 
-def record_braking(campaign: Campaign, rig: MiniRig, index: int, log: Log, journal: Journal) -> None:
+def seed(index: int, attempt: int) -> int:
+    """Each attempt has its own samples."""
+    return 10 * index + attempt
+
+
+def record_braking(
+    campaign: Campaign, rig: MiniRig, index: int, attempt: int, status: str, log: Log, journal: Journal
+) -> None:
     """One braking through the classes of the recorder process, in one thread, noting what it promises."""
     t0_s = rig.k * BLOCK_S
     order = {
@@ -37,22 +44,22 @@ def record_braking(campaign: Campaign, rig: MiniRig, index: int, log: Log, journ
         "metadata": {},
     }
     running = RunningBraking(campaign, rig.ring, order)
-    log.ack("begun", index)
-    for n, block in enumerate(rig.blocks(signals(SECONDS, seed=index))):
+    log.ack("begun", (index, attempt))
+    for n, block in enumerate(rig.blocks(signals(SECONDS, seed=seed(index, attempt)))):
         begin_s = block.k * BLOCK_NS * 1e-9
         names = [channel["name"] for channel in specification()["recording"]["channels"]]
         running.block(begin_s, begin_s + BLOCK_S, [block.ranges[name] for name in names], lambda: True)
-        if n % 3 == 2 and running.flush_if_due():
-            log.ack("spooled", (index, running.synced_s - t0_s))
-    running.end("complete", "")
-    log.ack("spooled", (index, SECONDS))
+        if n % 2 == 1 and running.flush_if_due():
+            log.ack("spooled", (index, attempt, running.synced_s - t0_s))
+    running.end(status, "")
+    log.ack(f"ended {status}", (index, attempt, SECONDS))
     done = commit(campaign, running.path, no_evaluation, journal)
-    log.ack("committed", (index, done.sha256))
+    log.ack("committed", (index, attempt, done.sha256))
 
 
 @pytest.fixture(scope="module")
 def history(tmp_path_factory: pytest.TempPathFactory) -> tuple[Log, dict[str, bytes]]:
-    """Two brakings: the log of all calls, and the files at the start."""
+    """A braking cut short, done again, and another one: the log of all calls, and the files at the start."""
     with pytest.MonkeyPatch.context() as patch, run_dir() as run:
         patch.setattr(spool, "SYNC_PERIOD_S", 0.0)  # flush whenever asked: more promises to keep
         campaign = new_campaign(tmp_path_factory.mktemp("crash"))
@@ -63,35 +70,39 @@ def history(tmp_path_factory: pytest.TempPathFactory) -> tuple[Log, dict[str, by
             # the journal was opened before: its descriptor is not known to the log, so open it again
             journal.close()
             journal = Journal(campaign.journal_path, "recorder")
-            for index in (1, 2):
-                record_braking(campaign, rig, index, log, journal)
+            for index, attempt, status in ((1, 1, "incomplete"), (1, 2, "complete"), (2, 1, "complete")):
+                record_braking(campaign, rig, index, attempt, status, log, journal)
             journal.close()
         assert after_kill(log, start, len(log.calls)) == snapshot(campaign.folder)  # the log is whole
         return log, start
+
+
+def attempt_path(campaign: Campaign, index: int, attempt: int) -> Path | None:
+    """Where the file of one attempt is: in its place, or set aside for a later one."""
+    places = (campaign.braking_path(index), campaign.superseded / f"{index:05d}-{attempt}.h5")
+    return next((p for p in places if p.exists() and read_summary(p)["attempt"] == attempt), None)
 
 
 def check(campaign: Campaign, log: Log, calls: int) -> None:
     """Recover, then compare with all that was promised before call number `calls`."""
     report = recover(campaign, no_evaluation, lock_timeout_s=1.0)
     promised = [(kind, value) for at, kind, value in log.acks if at <= calls]
-    for kind, value in promised:
+    complete = campaign.completed_indices()
+    for kind, (index, attempt, *value) in promised:
+        path = attempt_path(campaign, index, attempt)
+        assert path is not None
+        braking = read_braking(path)
         if kind == "committed":
-            index, sha256 = value
-            assert file_sha256(campaign.braking_path(index)) == sha256
-            assert index in campaign.completed_indices()
-        elif kind == "spooled":
-            index, seconds = value
-            braking = read_braking(campaign.braking_path(index))
-            samples, truth = (
-                braking.channels["microphone"].samples,
-                signals(SECONDS, seed=index)["microphone"],
-            )
-            assert len(samples) >= round(seconds * 40000)
+            assert file_sha256(path) == value[0]
+        elif kind != "begun":
+            samples = braking.channels["microphone"].samples
+            truth = signals(SECONDS, seed=seed(index, attempt))["microphone"]
+            assert len(samples) >= round(value[0] * 40000)
             np.testing.assert_array_equal(samples, truth[: len(samples)])
-            if seconds == SECONDS:
-                assert braking.status == "complete" and index in campaign.completed_indices()
-        else:
-            assert read_summary(campaign.braking_path(value))["status"] in ("complete", "recovered")
+        if kind == "ended complete":
+            assert braking.status == "complete" and index in complete
+        elif kind == "ended incomplete":
+            assert braking.status == "incomplete"
     assert (
         not report.damaged
         and not list(campaign.spools.glob("*.spool"))
