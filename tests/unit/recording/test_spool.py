@@ -14,7 +14,15 @@ from recording_samples import SPECS, header, signals, specification, write_spool
 
 from rigctl.core.errors import RecordingError
 from rigctl.recording import spool as spool_module
-from rigctl.recording.spool import KIND_DATA, KIND_END, KIND_HEADER, KIND_MARK, SpoolWriter, frame
+from rigctl.recording.spool import (
+    KIND_DATA,
+    KIND_END,
+    KIND_HEADER,
+    KIND_MARK,
+    MISSING_MARK,
+    SpoolWriter,
+    frame,
+)
 from rigctl.recording.spool_reader import UnreadableSpool, read_spool, scan
 
 
@@ -185,3 +193,21 @@ def test_what_is_not_json_is_refused_before_a_file_is_made(tmp_path: Path) -> No
     with pytest.raises(RecordingError, match="JSON"):
         SpoolWriter.create(tmp_path / "s", SPECS, header(specification(pressure_bar=float("nan"))))
     assert not (tmp_path / "s").exists()
+
+
+def test_frames_that_come_again_count_once() -> None:
+    start = RANGES[6][0]
+    frames, cut = scan(SMALL + SMALL[start:])
+    assert [f.sequence for f in frames] == list(range(10))
+    assert cut == len(SMALL) - start
+
+
+def test_a_spool_that_says_samples_are_missing_is_not_intact(tmp_path: Path) -> None:
+    """Samples that never came at the end of a braking leave no hole between frames."""
+    writer = SpoolWriter.create(tmp_path / "s", SPECS[:1], header(specification()))
+    writer.append([(0, 0, signals(0.1)["microphone"])], 100.1)
+    writer.mark(MISSING_MARK, 100.1, {"error": "overwritten"})
+    writer.end("complete", "")
+    writer.close()
+    found = read_spool(tmp_path / "s")
+    assert found.end == {"status": "complete", "note": ""} and not found.intact
