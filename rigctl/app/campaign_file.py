@@ -58,10 +58,12 @@ class CampaignFile(BaseModel):
         return (self.seed + attempt * _SEED_STEP) % 2**31
 
     def recorder_session(self) -> dict[str, Any]:
-        """What the recorder writes into every braking file besides samples."""
+        """What the recorder writes into every braking file besides samples.
+
+        The campaign's name is not among it: the same seed gives the same data sets, whatever the name.
+        """
         return {
             "metadata": {
-                "campaign": self.name,
                 "rig": self.rig.name,
                 "simulated": self.rig.simulated,
                 "program": self.program.name,

@@ -7,6 +7,7 @@ made (`rigctl.engine.procedures`), limits (watchdog), files (recorder).
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import Any, Protocol
@@ -400,7 +401,8 @@ class Engine:
             for block in self._rig.blocks():
                 self._rig_s = block.end_s
                 self._guard.passed(ALL_CHECKPOINTS)
-                self._guard.heartbeat(block.k, self._commanded())
+                with contextlib.suppress(SafetyTrip):  # it may be the watchdog itself that has gone
+                    self._guard.heartbeat(block.k, self._commanded())
                 self._tell(block)
                 if block.mean(PRESSURE) < 0.8 and abs(block.mean(SPEED)) < 1.0:
                     self._journal.write("at_rest_after_trip", rig_s=block.end_s)
