@@ -20,7 +20,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Record:
-    """One event: who wrote it, when (UTC, monotonic and rig time), what, and the chain to the record before."""
+    """One event: who wrote it, when (UTC, monotonic and rig time), what, and the chain to the one before."""
 
     utc: str
     mono_ns: int

@@ -67,19 +67,19 @@ class Link:
                 if now >= deadline:
                     raise DeviceError(f"peer has not read for {timeout_s:g} s", place=self.name) from None
                 select.select([], [self._sock], [], deadline - now)
-            except (BrokenPipeError, ConnectionResetError, OSError) as error:
+            except OSError as error:
                 raise LinkClosed("the other end has gone", place=self.name) from error
 
     def recv(self, timeout_s: float | None = None) -> Message | None:
         """Next message, or None if none came within `timeout_s` (None waits for ever)."""
-        if timeout_s is None or timeout_s > 0:
-            if not self._poll.poll(None if timeout_s is None else timeout_s * 1000.0):
-                return None
+        waits = timeout_s is None or timeout_s > 0
+        if waits and not self._poll.poll(None if timeout_s is None else timeout_s * 1000.0):
+            return None
         try:
-            data = self._sock.recv(MAX_MESSAGE_BYTES)
+            data = self._receive()
         except BlockingIOError:
             return None
-        except (ConnectionResetError, OSError) as error:
+        except OSError as error:
             raise LinkClosed("the other end has gone", place=self.name) from error
         if not data:
             raise LinkClosed("the other end has gone", place=self.name)
@@ -91,11 +91,25 @@ class Link:
             raise DeviceError("received JSON that is not an object", place=self.name)
         return message
 
+    def _receive(self) -> bytes:
+        try:
+            return self._sock.recv(MAX_MESSAGE_BYTES)
+        except ConnectionResetError:
+            # The peer left without reading everything; what it had sent before is still to be had.
+            return self._sock.recv(MAX_MESSAGE_BYTES)
+
     def drain(self) -> list[Message]:
-        """All messages that are there now, without waiting."""
+        """All messages that are there now, without waiting.
+
+        When the peer has gone, its last messages come first; `LinkClosed` is raised by the next call.
+        """
         messages: list[Message] = []
-        while (message := self.recv(0)) is not None:
-            messages.append(message)
+        try:
+            while (message := self.recv(0)) is not None:
+                messages.append(message)
+        except LinkClosed:
+            if not messages:
+                raise
         return messages
 
     def close(self) -> None:
@@ -118,7 +132,7 @@ class Listener:
             raise DeviceError(
                 f"cannot listen: {error.strerror or error}",
                 place=str(path),
-                remedy="The path must be writable and shorter than 108 characters; set TMPDIR to a short path.",
+                remedy="The path must be writable and shorter than 108 characters: set TMPDIR.",
             ) from error
         os.chmod(path, 0o600)
         self._sock.listen(8)

@@ -52,6 +52,17 @@ def test_peer_that_has_gone_is_noticed_by_both_calls(pair: tuple[Link, Link]):
         server.send({"m": "x"})
 
 
+def test_last_words_of_a_peer_are_heard_before_its_end(pair: tuple[Link, Link]):
+    client, server = pair
+    server.send({"m": "never read"})
+    client.send({"m": "a"})
+    client.send({"m": "b"})
+    client.close()  # with unread data: the kernel reports a reset
+    assert [message["m"] for message in server.drain()] == ["a", "b"]
+    with pytest.raises(LinkClosed):
+        server.drain()
+
+
 def test_killed_process_is_noticed(tmp_path: Path):
     listener = Listener(tmp_path / "s")
     pid = os.fork()

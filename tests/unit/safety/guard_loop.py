@@ -9,12 +9,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from hypothesis import HealthCheck, settings
+
 from rigctl.core.safety_link import SafetySample
 from rigctl.safety.guard import Answer, Guard
 from rigctl.safety.heartbeat import CHECKPOINTS, answer_to
 from rigctl.safety.latch import ResetBook, State
 from rigctl.safety.limits import LoadedLimits, load_limits
 
+CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # whatever the machine's load
 LIMITS_FILE = Path(__file__).parents[3] / "configs" / "limits" / "a_class.toml"
 
 

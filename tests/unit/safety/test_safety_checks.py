@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from guard_loop import BRAKING, loaded_limits, sample_at
+from guard_loop import BRAKING, CALM, loaded_limits, sample_at
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -116,6 +116,7 @@ def test_a_number_among_others_is_not_hidden_by_nan() -> None:
     assert "pressure_peak" in verdicts([moving(0), moving(1, pressure_bar=values)])[1]
 
 
+@CALM
 @given(st.lists(st.booleans(), min_size=1, max_size=60))
 def test_the_counter_saturates_and_forgives_one_by_one(bad: list[bool]) -> None:
     trip_at, count, expected = LIMITS.torque.readings, 0, False
@@ -262,6 +263,7 @@ def test_a_signal_without_a_valid_reading_is_nan_everywhere() -> None:
         assert not view.at_rest(1.0, 1.0)
 
 
+@CALM
 @given(st.lists(st.floats(-1e6, 1e6) | st.none() | st.just(math.nan), max_size=50))
 def test_signal_statistics_agree_with_the_definition(values: list[float | None]) -> None:
     valid = [v for v in values if v is not None and not math.isnan(v)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from guard_loop import BRAKING, Loop
+from guard_loop import BRAKING, CALM, Loop
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -173,5 +173,5 @@ class WatchdogMachine(RuleBasedStateMachine):
             assert self.loop.guard.silence_deadline_s() is None
 
 
-WatchdogMachine.TestCase.settings = settings(max_examples=60, stateful_step_count=30, deadline=None)
+WatchdogMachine.TestCase.settings = settings(CALM, max_examples=60, stateful_step_count=30)
 TestWatchdogMachine = WatchdogMachine.TestCase
