@@ -194,3 +194,37 @@ def test_squeal_ends_when_the_pads_open_and_when_the_disc_stands():
     listen(plant, 2.0, stop)
     assert plant.truth.pressure_bar > 19.0 and plant.truth.speed_rpm == 0.0
     assert line(listen(plant, 1.0, stop))[1] < 40.0
+
+
+def loudest_start(plant, commands):
+    """Largest sound pressure of the squeal band in the first 20 ms that are rendered, Pa."""
+    plant.step(50 * MS, commands, full_rate=True)
+    sound = plant.render_sound()[:800] * plant.sound_channel.scale
+    spectrum = np.abs(np.fft.rfft(sound * np.hanning(800))) * 4 / 800
+    return spectrum[round(2350 * 800 / HZ) - 1 : round(2350 * 800 / HZ) + 2].max()
+
+
+def test_motion_is_forgotten_while_nobody_listens():
+    """After a step without sound the brake starts from rest; it does not go on where it was heard last."""
+    on = replace(TURN, pressure_set_bar=20.0)
+    for unheard in (False, True):
+        plant = turning(10, degc=140.0)
+        listen(plant, 2.0, on)
+        assert loudest_start(plant, on) > 0.3
+        plant.step(50 * MS, on, full_rate=unheard)
+        assert loudest_start(plant, on) < 0.02
+
+
+def test_a_disc_stopped_while_squealing_starts_silent():
+    plant = turning(11, degc=140.0)
+    on = replace(TURN, pressure_set_bar=20.0)
+    listen(plant, 2.0, on)
+    listen(plant, 0.4, replace(on, quick_stop=True))
+    assert plant.truth.speed_rpm == 0.0
+    listen(plant, 2.0, replace(TURN, quick_stop=True))  # pads open
+    listen(plant, 2.0, TURN)
+    peaks = []
+    for _ in range(3):
+        plant.step(50 * MS, replace(TURN, pressure_set_bar=6.0), full_rate=True)
+        peaks.append(np.abs(plant.render_sound() * plant.sound_channel.scale).max())
+    assert max(peaks) < 0.3  # valve hiss, no tone
