@@ -58,12 +58,10 @@ class Signal:
         self.last = self.values[-1] if count else nan
         self.low = low
         self.high = high
+        # A block of different numbers has run 0, so only its last number matters to the next one.
+        self.run = 0
         if low == high:
-            self.run = (
-                before.run + count if before is not None and before.high == low == before.low else count
-            )
-        else:
-            self.run = 0
+            self.run = count + (before.run if before is not None and before.high == low else 0)
 
 
 def _number(value: object) -> float:

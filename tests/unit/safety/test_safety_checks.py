@@ -277,3 +277,48 @@ def test_signal_statistics_agree_with_the_definition(values: list[float | None])
 
 def test_good_samples_of_the_proof_follow_each_other() -> None:
     assert good_sample(4).t_s - good_sample(3).t_s == pytest.approx(good_sample(4).dt_s)
+
+
+def test_a_full_counter_empties_with_the_good_readings_of_the_next_block() -> None:
+    trip_at = LIMITS.torque.readings
+    bad, good = 2000.0, (1.0, 1.1, 1.2, 1.1, 1.0)
+    almost = (bad,) * (trip_at - 1) + good[trip_at - 1 :]
+    blocks = [(bad,) * 5] * 4 + [good, almost, good, almost]
+    found = verdicts([sample_at(k, torque_nm=values) for k, values in enumerate(blocks)], wanted=False)
+    assert ["torque_range" in block for block in found] == [True] * 4 + [False] * 4
+
+
+@pytest.mark.parametrize(
+    ("check", "name"),
+    [
+        ("pressure_peak", "pressure_bar"),
+        ("torque_range", "torque_nm"),
+        ("temperature_range", "temperature_degc"),
+    ],
+)
+def test_a_limit_is_not_kept_by_a_reading_that_is_no_number(check: str, name: str) -> None:
+    values = (None, math.nan, None, *getattr(moving(1), name)[3:])
+    assert check in verdicts([moving(0), moving(1, **{name: values})])[1]
+
+
+def test_a_run_begins_only_after_a_block_of_that_one_number() -> None:
+    first = Signal((1.0, 2.0), None)
+    assert (first.run, Signal((2.0, 2.0), first).run) == (0, 2)
+    second = Signal((2.0, 2.0), None)
+    assert (second.run, Signal((2.0, 2.0, 2.0), second).run, Signal((3.0,), second).run) == (2, 5, 1)
+
+
+def test_a_rate_needs_half_a_second() -> None:
+    degc = [450.0] + [460.0] * 8
+    samples = [sample_at(k, relay_closed=True, temperature_degc=(value,) * 5) for k, value in enumerate(degc)]
+    assert not any(verdicts(samples))
+
+
+@pytest.mark.parametrize(
+    ("pressure", "speed", "rest"),
+    [(0.0, 0.0, True), (0.9, -0.9, True), (-0.9, 0.9, True), (1.0, 0.0, False), (-1.0, 0.0, False),
+     (0.0, 1.0, False), (0.0, -1.0, False), (-5.0, 0.0, False), (0.0, -5.0, False)],
+)  # fmt: skip
+def test_rest_is_two_sided(pressure: float, speed: float, rest: bool) -> None:
+    view = View(sample_at(0, pressure_bar=(9.0, pressure), speed_rpm=(9.0, speed)), None, False)
+    assert view.at_rest(1.0, 1.0) is rest

@@ -604,3 +604,12 @@ def test_a_trip_before_the_first_sample() -> None:
     loop.serve()
     assert loop.note("trip")["k"] == -1
     assert sample_at(0).k == 0
+
+
+def test_the_good_samples_are_counted_anew_after_a_bad_one() -> None:
+    loop = Loop()
+    loop.blocks(10)
+    loop.block(doors_ok=False)
+    loop.guard.request_arm()
+    needed = loop.limits.arming.samples
+    assert [loop.block() for _ in range(needed)] == [Answer.HOLD] * (needed - 1) + [Answer.CLOSE]
