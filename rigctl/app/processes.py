@@ -82,6 +82,24 @@ class Child:
         return "\n".join(text[-lines:])
 
 
+def share_processors(*, lockstep: Sequence[Child], others: Sequence[Child]) -> None:
+    """Virtual time: processes that take turns share one processor, the others have the rest.
+
+    They never work at the same time, and waking a process on another processor costs many times more than on
+    the same one (on a virtual machine 90 µs against 9 µs). The rig server inherits the controller's place.
+    """
+    available = sorted(os.sched_getaffinity(0))
+    if len(available) < 2:
+        return
+    own = available[os.getpid() % len(available)]
+    for child, processors in [
+        *((c, {own}) for c in lockstep),
+        *((c, set(available) - {own}) for c in others),
+    ]:
+        with contextlib.suppress(ProcessLookupError):
+            os.sched_setaffinity(child.pid, processors)
+
+
 def start_watchdog(
     run_dir: Path, campaign: Path, limits: Path, link: tuple[str, Mapping[str, Any]], time: str
 ) -> Child:

@@ -19,7 +19,13 @@ from types import FrameType
 from rigctl.app.campaign_file import CampaignFile
 from rigctl.app.compose import build_rig
 from rigctl.app.control_socket import ControlClient
-from rigctl.app.processes import Child, start_controller, start_recorder, start_watchdog
+from rigctl.app.processes import (
+    Child,
+    share_processors,
+    start_controller,
+    start_recorder,
+    start_watchdog,
+)
 from rigctl.core.errors import DeviceError, LinkClosed
 from rigctl.core.journal import Journal, read_journal
 from rigctl.engine.state import Outcome, Progress, RunResult, Verb
@@ -97,6 +103,8 @@ class Supervisor:
         watchdog = start_watchdog(run_dir, self._campaign, file.limits_path(self._campaign), link, file.time)
         recorder = start_recorder(run_dir, self._campaign)
         children += [controller, watchdog, recorder]
+        if file.time == "virtual":
+            share_processors(lockstep=[controller, watchdog], others=[recorder])
         journal.write(
             "run_started",
             attempt=self._attempt,

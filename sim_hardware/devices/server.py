@@ -14,17 +14,19 @@ import select
 import signal
 import sys
 import time
-from pathlib import Path
 from typing import Any
 
 from rigctl.core.errors import DeviceError, LinkClosed, RigctlError
 from rigctl.core.wire import Link, Listener
+from sim_hardware.devices.options import add_plant_arguments
 from sim_hardware.devices.session import RING_NAME, SOCKET_NAME
 
 VIRTUAL_RELAY_TIMEOUT_S = 10.0  # wall clock: the watchdog process itself is late only when it is dead
 REAL_RELAY_TIMEOUT_S = 0.15
 LEASE_S = 0.25  # real time: set-points older than this are dropped
 FREE_RUN_BLOCK_NS = 50_000_000
+RING_S = 32.0
+REST_BLOCKS = 20
 ORPHAN_TIMEOUT_S = 120.0  # nobody has connected, or nobody is left
 
 
@@ -36,15 +38,18 @@ class RigServer:
     plant : sim_hardware.plant.Plant
     ring : SampleRing
         Written here, read by controller and recorder.
+    microphone : SimulatedMicrophone
+        Renders the sound.
     real_time : bool
         Pace blocks by the wall clock and do not wait for anybody.
     """
 
-    def __init__(self, plant: Any, ring: Any, *, real_time: bool) -> None:
+    def __init__(self, plant: Any, ring: Any, microphone: Any, *, real_time: bool) -> None:
         from sim_hardware.plant import Commands
 
         self._plant = plant
         self._ring = ring
+        self._microphone = microphone
         self._real_time = real_time
         self._relay_timeout_s = REAL_RELAY_TIMEOUT_S if real_time else VIRTUAL_RELAY_TIMEOUT_S
         self._commands_type = Commands
@@ -57,6 +62,7 @@ class RigServer:
         self._step_at = 0.0
         self._answered = True
         self._edge_at = time.monotonic()
+        self._blocks_at_rest = REST_BLOCKS
         self._poll = select.poll()
 
     def connect(self, controller: Link | None, safety: Link | None) -> None:
@@ -160,8 +166,13 @@ class RigServer:
     # -- plant ----------------------------------------------------------------------------------
 
     def _at_rest(self) -> bool:
+        """At rest for so long that the watchdog has seen it, noise of its sensors included."""
+        return self._blocks_at_rest >= REST_BLOCKS
+
+    def _watch_rest(self) -> None:
         truth = self._plant.truth
-        return truth.pressure_bar < 0.5 and abs(truth.speed_rpm) < 0.5
+        resting = truth.pressure_bar < 0.5 and abs(truth.speed_rpm) < 0.5
+        self._blocks_at_rest = self._blocks_at_rest + 1 if resting else 0
 
     def _advance(self) -> None:
         step = self._step
@@ -169,11 +180,13 @@ class RigServer:
         recording = bool(step and step["recording"])
         commands = self._commands(step["set"] if step else None)
         result = self._plant.step(dt_ns, commands, full_rate=recording)
+        self._watch_rest()
         ranges = {name: self._ring.write(name, samples) for name, samples in result.samples.items()}
-        spec = self._plant.sound_channel
-        written = self._ring.written(spec.name)
-        n_sound = round(spec.rate_hz * dt_ns * 1e-9) if recording else 0
-        ranges[spec.name] = (written, written + n_sound)
+        job = self._plant.take_sound_job()
+        name = self._plant.sound_channel.name
+        ranges[name] = self._microphone.nothing() if job is None else self._microphone.submit(self._k, job)
+        if job is None:
+            self._microphone.flush()
         status = {"relay": self._relay, "enabled": commands.drive_enabled, "estop": True, "doors": True}
         end_s = (self._t_ns + dt_ns) * 1e-9
         message = {
@@ -190,9 +203,6 @@ class RigServer:
             if not self._real_time:
                 self._step = None
             self._controller = self._send(self._controller, message)
-        if recording:
-            # The sound follows while the others are thinking; readers wait for it at the ring.
-            self._ring.write(spec.name, self._plant.render_sound())
 
     def _commands(self, points: dict[str, Any] | None) -> Any:
         """Set-points as the hardware sees them: the open relay takes torque and pressure away."""
@@ -248,10 +258,7 @@ def accept_parties(listener: Listener) -> dict[str, Link]:
 def main() -> None:
     """Entry of ``python -m sim_hardware.devices.server``."""
     parser = argparse.ArgumentParser(prog="rig server", description=__doc__)
-    parser.add_argument("--run-dir", type=Path, required=True)
-    parser.add_argument("--brake", type=Path, required=True)
-    parser.add_argument("--plant", type=Path, required=True)
-    parser.add_argument("--seed", type=int, default=1)
+    add_plant_arguments(parser)
     parser.add_argument("--time", choices=("virtual", "real"), required=True)
     options = parser.parse_args()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -260,18 +267,26 @@ def main() -> None:
     from rigctl.config.loading import load_model
     from rigctl.core.ring import SampleRing
     from sim_hardware.brake_model import load_brake
+    from sim_hardware.devices.microphone import BATCH, SimulatedMicrophone
     from sim_hardware.plant import Plant, PlantSettings
 
     settings = load_model(options.plant, PlantSettings)
     plant = Plant(settings, load_brake(options.brake), seed=options.seed)
-    ring = SampleRing.create(options.run_dir / RING_NAME, plant.channels)
-    plant.compile()
-    server = RigServer(plant, ring, real_time=options.time == "real")
-    parties = accept_parties(listener)
-    parties["controller"].send({"m": "hello", "channels": [spec.to_mapping() for spec in plant.channels]})
-    server.connect(parties["controller"], parties["safety"])
-    listener.close()
-    server.run()
+    ring = SampleRing.create(options.run_dir / RING_NAME, plant.channels, seconds=RING_S)
+    real_time = options.time == "real"
+    arguments = ["--brake", str(options.brake), "--plant", str(options.plant), "--seed", str(options.seed)]
+    microphone = SimulatedMicrophone(options.run_dir, ring, arguments, batch=1 if real_time else BATCH)
+    try:
+        plant.compile(sound=False)
+        microphone.wait_until_ready()
+        server = RigServer(plant, ring, microphone, real_time=real_time)
+        parties = accept_parties(listener)
+        parties["controller"].send({"m": "hello", "channels": [s.to_mapping() for s in plant.channels]})
+        server.connect(parties["controller"], parties["safety"])
+        listener.close()
+        server.run()
+    finally:
+        microphone.close()
 
 
 if __name__ == "__main__":

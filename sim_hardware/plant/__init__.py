@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sim_hardware.plant.plant import Plant
+    from sim_hardware.plant.plant import Plant, SoundJob, sound_of
     from sim_hardware.plant.settings import PlantSettings
     from sim_hardware.plant.words import Commands, PlantStep, PlantTruth
 
@@ -21,9 +21,11 @@ _HOME = {
     "Commands": "words",
     "PlantStep": "words",
     "PlantTruth": "words",
+    "SoundJob": "plant",
+    "sound_of": "plant",
 }
 
-__all__ = ["Commands", "Plant", "PlantSettings", "PlantStep", "PlantTruth"]
+__all__ = ["Commands", "Plant", "PlantSettings", "PlantStep", "PlantTruth", "SoundJob", "sound_of"]
 
 
 def __getattr__(name: str) -> Any:

@@ -29,6 +29,9 @@ MONITOR_INNER = 10
 _SLOW = (TORQUE, PRESSURE, SPEED, DISC_TEMPERATURE)
 _SCATTER_LIMIT = 3.0
 
+#: course of the slow state (rows, len(TRACK)), length in ticks, whether the drive is on
+SoundJob = tuple[NDArray[np.float64], int, bool]
+
 
 class Plant:
     """A simulated rig with its brake. The same seed and calls give the same samples bit for bit.
@@ -57,24 +60,23 @@ class Plant:
         self.channels = _channels(settings)
         self.sound_channel = self.channels[0]
         self.ventilator_max_m3_h = settings.thermal.ventilator_max_m3_h
-        streams = np.random.SeedSequence(seed).spawn(4)
-        scatter, sensors, safety, sound = (np.random.Generator(np.random.SFC64(stream)) for stream in streams)
+        scatter, sensors, safety, _ = _random_streams(seed)
         self._scatter_random, self._sensor_random, self._safety_random = scatter, sensors, safety
-        self._sound = Sound(settings, brake, sound)
+        self._sound = sound_of(settings, brake, seed)
         self._constants: dict[int, Record] = {}
         self._state = initial_state(settings)
         self._queue_tick, self._queue_value = slow_physics.empty_queue()
         self._requested_pa = 0.0
         self._relay_closed = False
-        self._pending: tuple[NDArray[np.float64], int, bool] | None = None
+        self._pending: SoundJob | None = None
         own, of = settings.safety_sensors, settings.sensors
         pyrometer = SensorError(gain=1.0, offset=0.0, noise=settings.pyrometer.noise_k)
         self._sensor = _errors(_TO_RIG, of.torque, of.pressure, of.speed, pyrometer)
         self._safety_sensor = _errors(_SAFETY_TO_RIG, own.pressure, own.speed, own.torque, own.temperature)
         self._draw_scatter()
 
-    def compile(self) -> None:
-        """Compile (or load) all kernels, without touching this rig."""
+    def compile(self, *, sound: bool = True) -> None:
+        """Compile (or load) all kernels, or those without the sound's, without touching this rig."""
         scratch = Plant(self.settings, self.brake, seed=0)
         run = Commands(
             speed_set_rpm=40.0,
@@ -85,7 +87,8 @@ class Plant:
         )
         scratch.step(500_000_000, run, full_rate=False)
         scratch.step(50_000_000, run, full_rate=True)
-        scratch.render_sound()
+        if sound:
+            scratch.render_sound()
 
     def step(self, dt_ns: int, commands: Commands, *, full_rate: bool) -> PlantStep:
         """Advance the rig.
@@ -151,6 +154,15 @@ class Plant:
         track, ticks, drive_on = self._pending
         self._pending = None
         return self._sound.render(track, ticks, drive_on)
+
+    def take_sound_job(self) -> SoundJob | None:
+        """What `sound_of(...).render` needs for the sound of the last full-rate step, once; else None.
+
+        For a microphone that is rendered elsewhere. It must `forget` the motion when a step in between was
+        not rendered.
+        """
+        job, self._pending = self._pending, None
+        return job
 
     @property
     def truth(self) -> PlantTruth:
@@ -281,3 +293,13 @@ def _channels(settings: PlantSettings) -> tuple[ChannelSpec, ...]:
         ChannelSpec(SPEED, "1/min", FULL_RATE_HZ, description="encoder of the drive"),
         ChannelSpec(DISC_TEMPERATURE, "°C", FULL_RATE_HZ, description="pyrometer on the rub track"),
     )
+
+
+def sound_of(settings: PlantSettings, brake: Brake, seed: int) -> Sound:
+    """The microphone of the plant with this seed, on its own: the same jobs give the same counts."""
+    return Sound(settings, brake, _random_streams(seed)[3])
+
+
+def _random_streams(seed: int) -> list[np.random.Generator]:
+    """Independent streams: stop-to-stop scatter, sensors, safety sensors, sound."""
+    return [np.random.Generator(np.random.SFC64(stream)) for stream in np.random.SeedSequence(seed).spawn(4)]
