@@ -7,6 +7,8 @@ watchdog is given time to reach the safe state, and the run ends with what is kn
 
 from __future__ import annotations
 
+import fcntl
+import os
 import shutil
 import signal
 import tempfile
@@ -31,6 +33,7 @@ from rigctl.core.journal import Journal, read_journal
 from rigctl.engine.state import Outcome, Progress, RunResult, Verb
 from rigctl.hal.devices import RigContext
 
+RUN_DIR_PREFIX = "rigctl-"
 START_TIMEOUT_S = 60.0
 SILENCE_S = 8.0  # wall clock without news of the controller before we look at what the watchdog says
 SAFE_STATE_S = 30.0  # for watchdog and rig to come to the safe state after the controller has died
@@ -219,14 +222,40 @@ class Supervisor:
 
 @contextmanager
 def _run_dir() -> Iterator[Path]:
-    """Private folder for sockets and the sample ring, in memory where there is /dev/shm."""
+    """Private folder for sockets and the sample ring, in memory where there is /dev/shm.
+
+    It is locked as long as this process lives; folders that a killed supervisor has left are removed.
+    """
     shm = Path("/dev/shm")
-    base = str(shm) if shm.is_dir() and _writable(shm) else None
-    path = Path(tempfile.mkdtemp(prefix="rigctl-", dir=base))
+    base = shm if shm.is_dir() and _writable(shm) else Path(tempfile.gettempdir())
+    for left in base.glob(f"{RUN_DIR_PREFIX}*"):
+        if (fd := _lock(left)) is not None:
+            shutil.rmtree(left, ignore_errors=True)
+            os.close(fd)
+    path = Path(tempfile.mkdtemp(prefix=RUN_DIR_PREFIX, dir=base))
+    fd = _lock(path)
     try:
         yield path
     finally:
         shutil.rmtree(path, ignore_errors=True)
+        if fd is not None:
+            os.close(fd)
+
+
+def _lock(folder: Path) -> int | None:
+    """Descriptor that holds the lock of a folder; None when somebody else has it, or it is not ours."""
+    try:
+        fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except OSError:
+        return None
+    try:
+        if os.fstat(fd).st_uid != os.getuid():
+            raise BlockingIOError
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(fd)
+        return None
+    return fd
 
 
 def _writable(folder: Path) -> bool:

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from rigctl.core.ring import SampleRing
@@ -42,7 +41,7 @@ class Block:
     ranges: Mapping[str, tuple[int, int]]
     ring: SampleRing
     stride: int = 1
-    status: Mapping[str, Any] = field(default_factory=dict)
+    status: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     @property
     def t_s(self) -> float:
@@ -70,4 +69,4 @@ class Block:
         if stop <= start:
             return float("nan")
         spec = self.ring.specs[name]
-        return float(np.mean(self.ring.read(name, start, stop), dtype=np.float64)) * spec.scale + spec.offset
+        return self.ring.mean(name, start, stop) * spec.scale + spec.offset

@@ -176,14 +176,26 @@ class SampleRing:
             )
         return out
 
+    def mean(self, name: str, start: int, stop: int) -> float:
+        """Mean of samples [start, stop) as acquired, without copying them; they must be written already."""
+        data = self._data[name]
+        at, n = start % len(data), stop - start
+        first = data[at : at + n]
+        total = float(np.add.reduce(first, dtype=np.float64))
+        if len(first) < n:
+            total += float(np.add.reduce(data[: n - len(first)], dtype=np.float64))
+        return total / n
+
     def _wait(self, name: str, stop: int, timeout_s: float, keep_waiting: Callable[[], bool] | None) -> None:
         deadline = time.monotonic() + timeout_s
+        pause_s = 0.0001  # short at first for who waits for a sample just being written; then cheap
         while int(self._counts[name][0]) < stop:
             if time.monotonic() > deadline or (keep_waiting is not None and not keep_waiting()):
                 raise RecordingError(
                     f"sample {stop} of {name} has not arrived within {timeout_s:g} s.", place=str(self.path)
                 )
-            time.sleep(0.0001)
+            time.sleep(pause_s)
+            pause_s = min(2.0 * pause_s, 0.001)
 
     def close(self) -> None:
         """Drop this process's views. The file stays; its maker removes it."""

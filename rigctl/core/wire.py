@@ -14,7 +14,7 @@ import select
 import socket
 import time
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from rigctl.core.errors import DeviceError, LinkClosed
 
@@ -89,7 +89,7 @@ class Link:
             raise DeviceError("received something that is not JSON", place=self.name) from error
         if not isinstance(message, dict):
             raise DeviceError("received JSON that is not an object", place=self.name)
-        return message
+        return cast(Message, message)
 
     def _receive(self) -> bytes:
         try:

@@ -117,9 +117,9 @@ class Procedures:
             block = yield
             self._recorder.block(block)
         self._recorder.mark("pressure_onset", block.end_s, temperature_degc=block.mean(DISC_TEMPERATURE))
-        for i in range(round(braking.duration_s / step_s)):
-            t_s = i * step_s
-            self._set_course(braking, t_s, t_s + step_s)
+        for pressure_bar, speed_rpm, ramp_rpm_per_s in self._course(braking):
+            rig.pressure.set_pressure(pressure_bar)
+            rig.drive.set_speed(speed_rpm, ramp_rpm_per_s)
             block = yield
             self._recorder.block(block)
             degc = block.mean(DISC_TEMPERATURE)
@@ -133,13 +133,17 @@ class Procedures:
             self._recorder.block(block)
         self.end_recording("complete")
 
-    def _set_course(self, braking: Braking, t_s: float, next_s: float) -> None:
-        """Set-points of the next block: pressure at its middle, speed along the profile to its end."""
-        middle_s = 0.5 * (t_s + next_s)
-        self._rig.pressure.set_pressure(braking.pressure_setpoint_bar(middle_s))
-        start_rpm, end_rpm = braking.speed_setpoint_rpm(t_s), braking.speed_setpoint_rpm(next_s)
-        ramp = abs(end_rpm - start_rpm) / (next_s - t_s)
-        self._rig.drive.set_speed(end_rpm, ramp if ramp > 0.0 else self._ramp)
+    def _course(self, braking: Braking) -> list[tuple[float, float, float]]:
+        """Set-points of each block: pressure at its middle, speed at its end, and the ramp to it."""
+        step_s = self._rig.config.block_s
+        course: list[tuple[float, float, float]] = []
+        for i in range(round(braking.duration_s / step_s)):
+            start_rpm = braking.speed_setpoint_rpm(i * step_s)
+            end_rpm = braking.speed_setpoint_rpm((i + 1) * step_s)
+            ramp = abs(end_rpm - start_rpm) / step_s
+            pressure_bar = braking.pressure_setpoint_bar((i + 0.5) * step_s)
+            course.append((pressure_bar, end_rpm, ramp if ramp > 0.0 else self._ramp))
+        return course
 
     def release(self) -> Script:
         """Pressure to zero; wait until it is gone.
