@@ -9,7 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +64,11 @@ class StoredChannel:
     native: ChannelSpec
     filter: FilterDescription | None
     gaps_s: tuple[tuple[float, float], ...]
+
+    @cached_property
+    def crc32(self) -> int:
+        """CRC-32 of the samples as stored."""
+        return crc32(self.data.samples.data)
 
 
 @dataclass(frozen=True)

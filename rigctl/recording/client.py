@@ -1,12 +1,18 @@
 """The controller's side of the recorder: say what to record, pass on ranges of samples, hear what is safe.
 
-Job: messages with little cost per block (samples stay in the ring), and a window so that the recorder can
-never be overrun: when it is more than `window_s` of rig time behind, `block` waits. In normal operation
-nothing waits. NOT its job: files (`recorder`), what to do when recording fails (`rigctl.engine`).
+Job: messages with little cost per block (samples stay in the ring; consecutive blocks share a message), and a
+window so that the recorder can never be overrun: when it is more than `window_s` of rig time behind, `block`
+waits. In normal operation nothing waits. NOT its job: files (`recorder`), what to do when recording fails
+(`rigctl.engine`).
+
+Blocks are held back until `MERGED_NS` of rig time are together *and* the next block has come: by then the
+converter has delivered the samples of those before it, and the recorder need not wait for them. What a dying
+controller had not passed on yet, at most `MERGED_NS` and one block, is lost with it.
 """
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,12 +20,21 @@ from typing import Any, Final
 
 from rigctl.core import wire
 from rigctl.core.blocks import Block
-from rigctl.core.errors import LinkClosed, RecordingError
+from rigctl.core.errors import DeviceError, LinkClosed, RecordingError
 from rigctl.core.wire import Link, Message
 
 SOCKET_NAME: Final = "recorder.sock"
+MERGED_NS: Final = 250_000_000
+"""Rig time that one message stands for; part of the second that a crash may cost (`spool.SYNC_PERIOD_S`)."""
 SIMULATED_EPOCH: Final = "2000-01-01T00:00:00+00:00"
 """Date at rig time 0 of a simulated rig: fixed, so that the same seed gives the same files."""
+_NOTHING: Final = (0, 0)
+_Ranges = list[tuple[int, int]]
+
+
+def _continues(ranges: _Ranges, before: _Ranges) -> bool:
+    """True when the range of every channel begins where the one before it ended."""
+    return all([start == stop for (start, _), (_, stop) in zip(ranges, before, strict=True)])  # noqa: C419
 
 
 class RecorderClient:
@@ -54,8 +69,11 @@ class RecorderClient:
             "epoch": clock_epoch,
         }
         self._window_s = window_s
-        self._names: list[str] | None = None
+        self._names: tuple[str, ...] | None = None
         self._copied_s = 0.0
+        self._start_ns = self._stop_ns = self._full_ns = 0  # rig time of the blocks held back; none when equal
+        self._first: _Ranges = []  # of the first and the last of them
+        self._last: _Ranges = []
         self._events: list[Message] = []
         self._idle_asked = 0
         self._idle_answered = 0
@@ -86,36 +104,36 @@ class RecorderClient:
         """
         if self._names is not None:
             raise RecordingError("a braking is being recorded already.", remedy="Call `end` first.")
-        names = [channel["name"] for channel in specification["recording"]["channels"]]
+        names = tuple(channel["name"] for channel in specification["recording"]["channels"])
         self._link.send({"m": "begin", "specification": dict(specification), "t0_s": t0_s, **self._constant})
         self._names = names
         self._copied_s = t0_s
 
     def block(self, block: Block) -> None:
-        """Pass on one block: ranges of samples only. Does nothing while no braking is recorded."""
+        """Pass on one block: ranges of samples only, in one message with those after it. Does nothing while
+        no braking is recorded.
+        """
         names = self._names
         if names is None:
             return
-        ranges = block.ranges
-        if block.end_s - self._copied_s > self._window_s:
-            self._wait_until_copied(block.end_s - self._window_s)
-        self._link.send(
-            {
-                "m": "block",
-                "t": block.t_ns,
-                "dt": block.dt_ns,
-                "r": [ranges.get(name, (0, 0)) for name in names],
-            }
-        )
+        ranges, t_ns = block.ranges, block.t_ns
+        found = [ranges.get(name, _NOTHING) for name in names]
+        if t_ns != self._stop_ns or t_ns >= self._full_ns or not _continues(found, self._last):
+            self._send_blocks()
+            self._start_ns, self._full_ns, self._first = t_ns, t_ns + MERGED_NS, found
+        self._last = found
+        self._stop_ns = t_ns + block.dt_ns
 
     def mark(self, name: str, t_s: float, **values: Any) -> None:
         """State what happened in the braking, e.g. "pressure_onset", at rig time `t_s`; NaN becomes null."""
+        self._send_blocks()
         plain = {key: None if value != value else value for key, value in values.items()}  # noqa: PLR0124
         self._link.send({"m": "mark", "name": name, "t": t_s, "values": plain})
 
     def end(self, status: str = "complete", note: str = "") -> None:
         """End the braking: "complete" or "incomplete". The file is made while the rig goes on."""
         self._names = None
+        self._send_blocks()
         self._link.send({"m": "end", "status": status, "note": note})
 
     def poll(self) -> list[Message]:
@@ -150,6 +168,7 @@ class RecorderClient:
         RecordingError
             Not within `timeout_s`.
         """
+        self._send_blocks()
         self._idle_asked += 1
         self._link.send({"m": "idle", "n": self._idle_asked})
         deadline = time.monotonic() + timeout_s
@@ -158,7 +177,30 @@ class RecorderClient:
 
     def close(self) -> None:
         """Part from the recorder: it finishes its files and ends. A running braking becomes incomplete."""
+        message = self._take_blocks()
+        if message is not None:
+            with contextlib.suppress(DeviceError):  # the recorder has gone before: nobody to pass it on to
+                self._link.send(message)
         self._link.close()
+
+    def _send_blocks(self) -> None:
+        """Send the blocks held back, after waiting for the recorder when it is too far behind."""
+        end_s = self._stop_ns * 1e-9
+        message = self._take_blocks()
+        if message is None:
+            return
+        if end_s - self._copied_s > self._window_s:
+            self._wait_until_copied(end_s - self._window_s)
+        self._link.send(message)
+
+    def _take_blocks(self) -> Message | None:
+        """The blocks held back as one message, None when there are none; they are given out once."""
+        start_ns, stop_ns = self._start_ns, self._stop_ns
+        if start_ns == stop_ns:
+            return None
+        ranges = [(start, stop) for (start, _), (_, stop) in zip(self._first, self._last, strict=True)]
+        self._start_ns = self._stop_ns = self._full_ns = 0
+        return {"m": "block", "t": start_ns, "dt": stop_ns - start_ns, "r": ranges}
 
     def _wait_until_copied(self, t_s: float, timeout_s: float = 30.0) -> None:
         deadline = time.monotonic() + timeout_s

@@ -13,14 +13,13 @@ import json
 import math
 from datetime import UTC, datetime, timedelta
 from typing import Any
-from zlib import crc32
 
 import numpy as np
 
 from rigctl import __version__
 from rigctl.core.channels import MICROPHONE
 from rigctl.recording.braking import StoredBraking, StoredChannel
-from rigctl.recording.hdf5_image import Group, Image, pack, pack_time_axis, set_attributes
+from rigctl.recording.hdf5_image import Group, Image
 
 _UNITS_BY_SUFFIX = {
     "hz": "Hz",
@@ -47,17 +46,8 @@ def start_time(braking: StoredBraking) -> str:
 
 def image(braking: StoredBraking) -> bytes:
     """The braking file as bytes."""
-    root = Image()
-    set_attributes(
-        root.id,
-        {
-            "NX_class": "NXroot",
-            "default": "entry",
-            "file_time": datetime.now(UTC).isoformat(timespec="seconds"),
-            "creator": "rigctl",
-            "creator_version": __version__,
-        },
-    )
+    root = Image(NX_class="NXroot", default="entry", creator="rigctl", creator_version=__version__)
+    root.stamp("", "file_time", datetime.now(UTC).isoformat(timespec="seconds"))
     default = MICROPHONE if MICROPHONE in braking.channels else next(iter(braking.channels), "braking")
     entry = root.group("entry", "NXentry", default=default)
     specification = braking.specification
@@ -85,15 +75,15 @@ def _channel(entry: Group, channel: StoredChannel, axes: dict[tuple[float, int],
         "units": "count" if spec.is_counts else spec.unit,
         "long_name": f"{spec.name} (counts)" if spec.is_counts else f"{spec.name} ({spec.unit})",
         "rate_hz": spec.rate_hz,
-        "crc32": crc32(samples.data),
     }
-    group.packed(signal, samples, pack(samples), **attributes)
+    group.packed(signal, samples, **attributes)
+    group.stamp(signal, "crc32", channel.crc32)
     key = (spec.rate_hz, len(samples))
     if key in axes:
         group.link("time", axes[key])
     else:
         axes[key] = f"/entry/{spec.name}/time"
-        group.packed("time", *pack_time_axis(*key), units="s", long_name="time since the first sample (s)")
+        group.time_axis("time", *key, units="s", long_name="time since the first sample (s)")
     if spec.is_counts:
         group.number("counts_scaling_factor", spec.scale)
         group.number("counts_offset", spec.offset)

@@ -7,11 +7,11 @@ CPU time of this thread for computing, wall time for what waits for the disk. As
 from __future__ import annotations
 
 import hashlib
+import os
 import socket
 import statistics
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -27,13 +27,14 @@ from rigctl.core.ring import SampleRing
 from rigctl.core.wire import Link
 from rigctl.recording.braking import StoredBraking, assemble
 from rigctl.recording.braking_file import file_image, read_summary, verify
-from rigctl.recording.client import RecorderClient
+from rigctl.recording.client import MERGED_NS, RecorderClient
 from rigctl.recording.durable import write_part
 from rigctl.recording.evaluation import evaluate_braking
 from rigctl.recording.spool import SpoolWriter
 from rigctl.recording.spool_reader import read_spool
 
 SECONDS = 13.0  # a braking of 12 s with half a second before and after
+MESSAGE_S = MERGED_NS * 1e-9  # what the controller passes on at a time
 
 
 def measure(
@@ -71,7 +72,7 @@ def plain_h5py(path: Path, braking: StoredBraking, fill: bool) -> None:
 
 
 def finalise(folder: Path, repeats: int) -> None:
-    data = write_spool(folder / "s", SECONDS)
+    data = write_spool(folder / "s", SECONDS, block_s=MESSAGE_S)
     print(f"one braking of {SECONDS:g} s: {sum(a.nbytes for a in data.values()) / 1e6:.2f} MB as acquired")
     spool = read_spool(folder / "s")
     braking = assemble(spool, evaluate_braking)
@@ -100,8 +101,8 @@ def finalise(folder: Path, repeats: int) -> None:
 def spooling(folder: Path, repeats: int) -> None:
     data, path = signals(SECONDS), folder / "throughput"
     blocks = []
-    for k in range(round(SECONDS / BLOCK_S)):
-        sizes = [(number, spec.name, round(spec.rate_hz * BLOCK_S)) for number, spec in enumerate(SPECS)]
+    for k in range(round(SECONDS / MESSAGE_S)):
+        sizes = [(number, spec.name, round(spec.rate_hz * MESSAGE_S)) for number, spec in enumerate(SPECS)]
         blocks.append([(number, k * n, data[name][k * n : (k + 1) * n]) for number, name, n in sizes])
     size = sum(array.nbytes for array in data.values())
 
@@ -109,38 +110,41 @@ def spooling(folder: Path, repeats: int) -> None:
         path.unlink(missing_ok=True)
         writer = SpoolWriter.create(path, SPECS, header(specification()))
         for number, parts in enumerate(blocks):
-            writer.append(parts, number * BLOCK_S)
+            writer.append(parts, number * MESSAGE_S)
             writer.sync_if_due()
         writer.end("complete", "")
         writer.close()
 
     print("spool")
     median = measure("a whole braking, wall time", write, repeats, time.perf_counter)
-    print(f"  {size / median / 1e3:.0f} MB/s, {1e3 * median / len(blocks):.0f} us a block of 50 ms")
+    print(f"  {size / median / 1e3:.0f} MB/s, {1e3 * median / len(blocks):.0f} us a message of 250 ms")
 
 
 def controller(folder: Path, repeats: int) -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-
-    def swallow() -> None:
+    reader = os.fork()
+    if reader == 0:  # a process of its own, as the recorder is
+        ours.close()
         while theirs.recv(65536):
             pass
-
-    threading.Thread(target=swallow, daemon=True).start()
+        os._exit(0)
+    theirs.close()
     ring = SampleRing.create(folder / "ring", SPECS, 1.0)
     client = RecorderClient(Link(ours, "bench"), window_s=1e9)
     client.begin(specification(), t0_s=0.0)
-    ranges = {
-        spec.name: (round(1e6 * spec.rate_hz / 4000), round(1e6 * spec.rate_hz / 4000) + 200)
-        for spec in SPECS
-    }
-    block = Block(1000, 50_000_000_000, 50_000_000, ranges, ring)
+    sizes = {spec.name: round(spec.rate_hz * BLOCK_S) for spec in SPECS}
+    dt_ns = round(BLOCK_S * 1e9)
+    blocks = [
+        Block(k, k * dt_ns, dt_ns, {name: (k * n, (k + 1) * n) for name, n in sizes.items()}, ring)
+        for k in range(20_000, 21_000)
+    ]
     print("controller")
     median = measure(
-        "1000 x RecorderClient.block, CPU", lambda: [client.block(block) for _ in range(1000)], repeats
+        "1000 x RecorderClient.block, CPU", lambda: [client.block(block) for block in blocks], repeats
     )
     print(f"  {median:.1f} us a block")
     client.close()
+    os.waitpid(reader, 0)
 
 
 if __name__ == "__main__":

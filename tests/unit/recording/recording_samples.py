@@ -88,17 +88,18 @@ def write_spool(
     status: str | None = "complete",
     skip_blocks: frozenset[int] = frozenset(),
     specified: Mapping[str, Any] | None = None,
+    block_s: float = BLOCK_S,
 ) -> dict[str, np.ndarray]:
     """Write the spool of a braking block by block; returns the samples. `status` None leaves out the end."""
     data = signals(seconds, seed)
     writer = SpoolWriter.create(path, SPECS, header(specified or specification(index)))
-    for k in range(round(seconds / BLOCK_S)):
+    for k in range(round(seconds / block_s)):
         parts = []
         for number, spec in enumerate(SPECS):
-            n = round(spec.rate_hz * BLOCK_S)
+            n = round(spec.rate_hz * block_s)
             parts.append((number, k * n, data[spec.name][k * n : (k + 1) * n]))
         if k not in skip_blocks:
-            writer.append(parts, 100.0 + (k + 1) * BLOCK_S)
+            writer.append(parts, 100.0 + (k + 1) * block_s)
         if k == 2:
             writer.mark("pressure_onset", 100.15, {"pressure_bar": 15.0})
     if status is not None:

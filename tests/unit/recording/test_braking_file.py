@@ -21,7 +21,7 @@ from rigctl.recording.braking import Outcome, assemble, decimation_factors
 from rigctl.recording.braking_file import file_image, read_braking, read_summary, verify
 from rigctl.recording.durable import write_part
 from rigctl.recording.evaluation import evaluate_braking
-from rigctl.recording.hdf5_image import CHUNK_SAMPLES
+from rigctl.recording.packing import CHUNK_SAMPLES
 from rigctl.recording.spool_reader import read_spool
 from rigctl.signals.decimation import decimate
 
