@@ -31,8 +31,8 @@ limits = {{ max_degc = 480.0, cool_down_degc = 400.0 }}
 [sequences.recording]
 sampling_hz = 40000
 channels = [
-    {{ name = "microphone" }}, {{ name = "torque", decimation = 40 }}, {{ name = "pressure", decimation = 40 }},
-    {{ name = "speed", decimation = 40 }}, {{ name = "disc_temperature", decimation = 40 }},
+    {{ name = "microphone" }}, {{ name = "torque", decimation = 40 }}, {{ name = "speed", decimation = 40 }},
+    {{ name = "pressure", decimation = 40 }}, {{ name = "disc_temperature", decimation = 40 }},
 ]
 """
 
@@ -98,7 +98,9 @@ class Cli:
                 if condition(record):
                     return record
             time.sleep(0.02)
-        raise AssertionError(f"not in the journal within {timeout_s} s: {[r.kind for r in self.records(name)]}")
+        raise AssertionError(
+            f"not in the journal within {timeout_s} s: {[r.kind for r in self.records(name)]}"
+        )
 
     def pid_of(self, name: str, process: str) -> int:
         record = self.wait_for(name, lambda r: r.kind == "run_started")

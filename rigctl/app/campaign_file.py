@@ -102,7 +102,7 @@ def freeze(
     """
     mapping = rig.model_dump(mode="json", exclude_none=True)
     copies: dict[str, Path] = {}
-    for key, path in resolved_paths(rig, rig_path.resolve().parent).items():
+    for key, path in resolved_paths(rig, rig_path).items():
         target = f"{CONFIG_FOLDER}/{key.replace('.', '-')}.toml"
         copies[target] = path
         _assign(mapping, key, target)

@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from rigctl.app import exit_codes
-from rigctl.app.compose import build_rig, dry_run, read_program, read_rig
+from rigctl.app.compose import build_rig, dry_run, read_program, read_rig, resolved_paths
 from rigctl.app.progress_view import duration_text
 from rigctl.hal.devices import RigContext
 from rigctl.safety.limits import load_limits
@@ -19,6 +19,7 @@ from rigctl.safety.limits import load_limits
 def show_check(program_path: Path, rig_path: Path, console: Console) -> int:
     """Print the dry run; returns the exit code."""
     program, rig = read_program(program_path), read_rig(rig_path)
+    resolved_paths(rig, rig_path)
     folder = rig_path.resolve().parent
     load_limits((folder / rig.safety.limits).resolve())
     build_rig(rig, RigContext(Path(), "virtual", None, str(rig_path), folder))

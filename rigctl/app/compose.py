@@ -83,7 +83,7 @@ def build_rig(config: RigConfig, context: RigContext) -> Rig:
     return Rig(config, context, registry())
 
 
-def resolved_paths(config: RigConfig, folder: Path) -> dict[str, Path]:
+def resolved_paths(config: RigConfig, rig_path: Path) -> dict[str, Path]:
     """Every file that a rig file names: "devices.acquisition.brake" -> absolute path.
 
     Raises
@@ -98,14 +98,14 @@ def resolved_paths(config: RigConfig, folder: Path) -> dict[str, Path]:
         for key, value in getattr(config.devices, role).settings.items():
             if isinstance(value, str) and value.endswith(".toml"):
                 named[f"devices.{role}.{key}"] = value
-    paths = {key: (folder / value).resolve() for key, value in named.items()}
+    paths = {key: (rig_path.resolve().parent / value).resolve() for key, value in named.items()}
     for key, path in paths.items():
         if not path.is_file():
             raise ConfigError(
-                "no such file.",
-                place=f"rig file in {folder}: {key}",
+                f"no such file: {path}.",
+                place=f"{rig_path}: {key} = {named[key]!r}",
                 value=named[key],
-                remedy=f"{path} does not exist; paths start at the rig file's folder.",
+                remedy="Relative paths start at the folder of the rig file.",
             )
     return paths
 

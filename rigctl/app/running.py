@@ -6,6 +6,7 @@ processes (`rigctl.app.supervisor`).
 
 from __future__ import annotations
 
+import re
 import secrets
 import shutil
 import threading
@@ -18,7 +19,15 @@ from rich.console import Console
 
 from rigctl.app import campaign_file, exit_codes
 from rigctl.app.campaign_file import CampaignFile
-from rigctl.app.compose import build_rig, dry_run, prediction_of, problems_text, read_program, read_rig
+from rigctl.app.compose import (
+    build_rig,
+    dry_run,
+    prediction_of,
+    problems_text,
+    read_program,
+    read_rig,
+    resolved_paths,
+)
 from rigctl.app.progress_view import ProgressView, duration_text
 from rigctl.app.reporting import make_report
 from rigctl.app.supervisor import Supervisor
@@ -30,6 +39,7 @@ from rigctl.recording.campaign import Campaign, create_campaign, open_campaign, 
 from rigctl.recording.recovery import recover
 from rigctl.safety.limits import load_limits
 
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 DISK_RESERVE_BYTES = 500e6
 PROCESS_CAUSES = frozenset(
     {"controller_gone", "controller_deaf", "heartbeat_late", "samples_late", "rig_gone", "terminated"}
@@ -58,6 +68,7 @@ def run(options: RunOptions, console: Console) -> int:
     """
     program = read_program(options.program)
     rig = read_rig(options.rig)
+    resolved_paths(rig, options.rig)
     limits = load_limits((options.rig.resolve().parent / rig.safety.limits).resolve())
     if rig.prediction is not None:
         prediction_of((options.rig.resolve().parent / rig.prediction.brake).resolve())
@@ -66,7 +77,15 @@ def run(options: RunOptions, console: Console) -> int:
     result = dry_run(program, rig)
     if not result.ok:
         raise ConfigError(problems_text(result, str(options.program)))
-    name = options.name or f"{program.name}-{datetime.now():%Y%m%d-%H%M%S}"
+    name = f"{program.name}-{datetime.now():%Y%m%d-%H%M%S}" if options.name is None else options.name
+    if not _NAME.fullmatch(name.replace(" ", "_") if options.name is None else name):
+        raise ConfigError(
+            f"{name!r} cannot be the name of a campaign.",
+            place="--name",
+            value=name,
+            remedy="Use up to 100 letters, digits, '.', '_' and '-', beginning with a letter or digit.",
+        )
+    name = name.replace(" ", "_")
     require_free_space(options.out, DISK_RESERVE_BYTES + 2 * result.data_bytes)
     file, copies = campaign_file.freeze(
         name,

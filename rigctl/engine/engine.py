@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import Any, Protocol
 
@@ -101,7 +102,8 @@ class Engine:
         self._stop = False
         self._armed = False
         self._listening = True
-        self._incomplete: list[int] = []
+        self._incomplete: set[int] = set()
+        self._broken: Counter[int] = Counter()  # recordings ended as incomplete, until they are committed
         self._failures = 0
         self._rig_s = 0.0
         self._report_at = 0.0
@@ -217,11 +219,14 @@ class Engine:
 
     def _committed(self, event: dict[str, Any]) -> None:
         """A braking is in its file for good; only now it counts."""
+        index = int(event["index"])
         if event.get("status") == "complete":
             self.progress.done += 1
             self.progress.squealing += 1 if event.get("events") else 0
-        elif event["index"] not in self._incomplete:
-            self._mark_incomplete(int(event["index"]), "parts of the recording are missing")
+        elif self._broken[index]:  # broken off on purpose, and dealt with then
+            self._broken[index] -= 1
+        else:
+            self._mark_incomplete(index, "parts of the recording are missing")
 
     def _commanded(self) -> dict[str, Any]:
         drive = self._rig.drive
@@ -366,12 +371,13 @@ class Engine:
     # -- ways out -------------------------------------------------------------------------------
 
     def _mark_incomplete(self, index: int, reason: str) -> None:
-        self._incomplete.append(index)
+        self._incomplete.add(index)
         self.progress.incomplete = len(self._incomplete)
         self._journal.write("braking_broken_off", rig_s=self._rig_s, index=index, reason=reason)
 
     def _break_recording(self, reason: str) -> None:
         if self._procedures.recording:
+            self._broken[self.progress.braking] += 1
             try:
                 self._procedures.end_recording("incomplete", reason)
             except RigctlError as error:

@@ -94,9 +94,13 @@ def test_frozen_watchdog_opens_the_relay(cli):
 def test_over_temperature_ends_in_the_safe_state(cli):
     """The disc is conditioned to 120 °C, the watchdog allows 90: it trips, whatever the controller thinks."""
     limits = cli.edited_config(
-        "limits/a_class.toml", (r"^max_degc = .*", "max_degc = 90.0"), (r"^approach_from_degc = .*", "approach_from_degc = 60.0")
-    )  # fmt: skip
-    cli.rig = cli.edited_config("rigs/simulated.toml", (r'^limits = "../limits/a_class.toml"', f'limits = "{limits}"'))
+        "limits/a_class.toml",
+        (r"^max_degc = .*", "max_degc = 90.0"),
+        (r"^approach_from_degc = .*", "approach_from_degc = 60.0"),
+    )
+    cli.rig = cli.edited_config(
+        "rigs/simulated.toml", (r'^limits = "../limits/a_class.toml"', f'limits = "{limits}"')
+    )
     run = cli.start_run(cli.program(pressures=[10], temperatures=[120]), "a")
     text, _ = run.communicate(timeout=90)
     assert run.returncode == 4, text + cli.logs("a")

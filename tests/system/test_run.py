@@ -65,7 +65,9 @@ def test_campaign_is_complete_safe_and_reported(cli):
 def test_same_seed_same_data_other_seed_other_data(cli):
     program = cli.program(pressures=[20], temperatures=[40], duration_s=1.0)
     for name, seed in (("a", 5), ("b", 5), ("c", 6)):
-        code, text = cli.run("run", program, "--rig", cli.rig, "--out", cli.folder, "--name", name, "--seed", seed)
+        code, text = cli.run(
+            "run", program, "--rig", cli.rig, "--out", cli.folder, "--name", name, "--seed", seed
+        )
         assert code == 0, text + cli.logs(name)
     a, b, c = (datasets(brakings(cli.folder / name)[0]) for name in "abc")
     assert a.keys() == b.keys() == c.keys()

@@ -97,4 +97,3 @@ _CLASSES: Mapping[str, str] = {
     "acquisition": "SimulatedAcquisition",
     "safety": "SimulatedSafetyChannel",
 }
-
