@@ -87,3 +87,5 @@ class RigConfig(_Frozen):
     safety: SafetyConfig
     prediction: PredictionConfig | None = None
     block_s: Annotated[float, Field(ge=0.01, le=0.5)] = 0.05
+    steady_block_s: Annotated[float, Field(ge=0.01, le=0.5)] = 0.05
+    """Virtual time: length of recorded blocks while the set-points do not change."""

@@ -7,7 +7,8 @@ samples. Nothing here sleeps or looks at a wall clock. Not its job: order of bra
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from rigctl.core.blocks import Block
@@ -45,6 +46,51 @@ class Recorder(Protocol):
     def end(self, status: str = "complete", note: str = "") -> None:
         """The braking is over: "complete" or "incomplete"."""
         ...
+
+
+@dataclass(frozen=True, slots=True)
+class CoursePoint:
+    """Set-points of one block of a braking."""
+
+    dt_s: float
+    pressure_bar: float
+    speed_rpm: float
+    ramp_rpm_per_s: float
+
+
+def spans(duration_s: float, longest_s: float) -> list[float]:
+    """Lengths of blocks that make up a duration, to the millisecond: as long as allowed, the rest last."""
+    whole_ms, longest_ms = round(duration_s * 1000.0), round(longest_s * 1000.0)
+    count, rest_ms = divmod(whole_ms, longest_ms)
+    return [longest_s] * count + ([rest_ms / 1000.0] if rest_ms else [])
+
+
+def course_of(
+    braking: Braking, block_s: float, steady_block_s: float, ramp_rpm_per_s: float
+) -> list[CoursePoint]:
+    """Set-points of each block of a braking, from the onset of pressure to its release.
+
+    Pressure is that at the middle of a block, speed that at its end with the ramp that leads to it. Blocks
+    are `block_s` long; while the set-points do not change they are merged up to `steady_block_s`.
+    """
+    points: list[CoursePoint] = []
+    t_s = 0.0
+    for dt_s in spans(braking.duration_s, block_s):
+        start_rpm, end_rpm = braking.speed_setpoint_rpm(t_s), braking.speed_setpoint_rpm(t_s + dt_s)
+        ramp = abs(end_rpm - start_rpm) / dt_s
+        pressure_bar = braking.pressure_setpoint_bar(t_s + 0.5 * dt_s)
+        point = CoursePoint(dt_s, pressure_bar, end_rpm, ramp if ramp > 0.0 else ramp_rpm_per_s)
+        last = points[-1] if points else None
+        if (
+            last is not None
+            and replace(last, dt_s=dt_s) == point
+            and round((last.dt_s + dt_s) * 1e3) <= round(steady_block_s * 1e3)
+        ):
+            points[-1] = replace(last, dt_s=last.dt_s + dt_s)
+        else:
+            points.append(point)
+        t_s += dt_s
+    return points
 
 
 class Procedures:
@@ -106,44 +152,38 @@ class Procedures:
         BreakOff
             The disc became hotter than the sequence allows.
         """
-        rig, step_s = self._rig, self._rig.config.block_s
+        rig, recorder = self._rig, self._recorder
         self._progress.phase = f"braking with {braking.pressure_bar:g} bar"
-        rig.request(dt_s=step_s, recording=True)
+        before_s, *rest_s = spans(max(braking.recording.pre_s, rig.config.block_s), rig.steady_block_s)
+        rig.request(dt_s=before_s, recording=True)
         block = yield
-        self._recorder.begin(braking.model_dump(mode="json"), t0_s=block.t_s)
+        recorder.begin(braking.model_dump(mode="json"), t0_s=block.t_s)
         self.recording = True
-        self._recorder.block(block)
-        for _ in range(max(round(braking.recording.pre_s / step_s) - 1, 0)):
+        recorder.block(block)
+        block = yield from self._record(rest_s, block)
+        recorder.mark("pressure_onset", block.end_s, temperature_degc=block.mean(DISC_TEMPERATURE))
+        for point in course_of(braking, rig.config.block_s, rig.steady_block_s, self._ramp):
+            rig.pressure.set_pressure(point.pressure_bar)
+            rig.drive.set_speed(point.speed_rpm, point.ramp_rpm_per_s)
+            rig.request(dt_s=point.dt_s, recording=True)
             block = yield
-            self._recorder.block(block)
-        self._recorder.mark("pressure_onset", block.end_s, temperature_degc=block.mean(DISC_TEMPERATURE))
-        for pressure_bar, speed_rpm, ramp_rpm_per_s in self._course(braking):
-            rig.pressure.set_pressure(pressure_bar)
-            rig.drive.set_speed(speed_rpm, ramp_rpm_per_s)
-            block = yield
-            self._recorder.block(block)
+            recorder.block(block)
             degc = block.mean(DISC_TEMPERATURE)
             if degc > braking.limits.max_degc:
                 raise BreakOff(None, f"disc at {degc:.0f} °C, above max_degc {braking.limits.max_degc:g} °C")
         self._progress.phase = "releasing"
-        self._recorder.mark("pressure_release", block.end_s)
+        recorder.mark("pressure_release", block.end_s)
         rig.pressure.set_pressure(0.0)
-        for _ in range(round(braking.recording.post_s / step_s)):
-            block = yield
-            self._recorder.block(block)
+        yield from self._record(spans(braking.recording.post_s, rig.steady_block_s), block)
         self.end_recording("complete")
 
-    def _course(self, braking: Braking) -> list[tuple[float, float, float]]:
-        """Set-points of each block: pressure at its middle, speed at its end, and the ramp to it."""
-        step_s = self._rig.config.block_s
-        course: list[tuple[float, float, float]] = []
-        for i in range(round(braking.duration_s / step_s)):
-            start_rpm = braking.speed_setpoint_rpm(i * step_s)
-            end_rpm = braking.speed_setpoint_rpm((i + 1) * step_s)
-            ramp = abs(end_rpm - start_rpm) / step_s
-            pressure_bar = braking.pressure_setpoint_bar((i + 0.5) * step_s)
-            course.append((pressure_bar, end_rpm, ramp if ramp > 0.0 else self._ramp))
-        return course
+    def _record(self, lengths_s: Sequence[float], block: Block) -> Generator[None, Block, Block]:
+        """Record blocks of these lengths without changing set-points; returns the last one."""
+        for dt_s in lengths_s:
+            self._rig.request(dt_s=dt_s, recording=True)
+            block = yield
+            self._recorder.block(block)
+        return block
 
     def release(self) -> Script:
         """Pressure to zero; wait until it is gone.

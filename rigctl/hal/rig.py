@@ -100,6 +100,14 @@ class Rig:
         """What each device says it is, by role."""
         return {role: dict(self._devices[role].identity()) for role in self._opened}
 
+    @property
+    def steady_block_s(self) -> float:
+        """Length of recorded blocks while set-points are steady: above `block_s` in virtual time only."""
+        config = self.config
+        return (
+            max(config.block_s, config.steady_block_s) if self.context.time == "virtual" else config.block_s
+        )
+
     def request(self, *, dt_s: float, recording: bool) -> None:
         """Length and kind of the blocks from the next one on."""
         self._request = Request(round(dt_s * NS_PER_S), recording)

@@ -170,6 +170,9 @@ class RigServer:
         return self._blocks_at_rest >= REST_BLOCKS
 
     def _watch_rest(self) -> None:
+        if self._relay:
+            self._blocks_at_rest = 0
+            return
         truth = self._plant.truth
         resting = truth.pressure_bar < 0.5 and abs(truth.speed_rpm) < 0.5
         self._blocks_at_rest = self._blocks_at_rest + 1 if resting else 0
