@@ -31,12 +31,21 @@ from rigctl.analysis.style import (
     PURPLE,
     TITLE,
     VERMILION,
+    axes_title,
+    colour_bar,
     grid,
+    label_axes,
     new_figure,
 )
 
 _MAIN_BAND = 0.1
 """Events within this share of the median frequency belong to the main squeal."""
+
+_LOW_KHZ = 1.15
+"""Below this frequency the axis begins at zero."""
+
+_BARS = 1.0 / 1.2
+"""Height of a bar of 100 %, as share of its axes; the numbers of brakings stand above it."""
 
 _ROLE_COLOURS = (BLUE, GREEN, PURPLE, VERMILION)
 
@@ -49,25 +58,25 @@ def pressure_frequency(table: CampaignTable, prediction: Prediction | None) -> F
     events = table.squeals()
     figure = new_figure(8.0, 5.6)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3.1, 1.0))
-    figure.subplots_adjust(left=0.085, right=0.895, top=0.88, bottom=0.085, hspace=0.1)
-    x_max = max(row.pressure_bar for row in rows)
-    if prediction is not None:
-        x_max = max(x_max, prediction.onset_bar)
-    top.set_xlim(0, 1.06 * x_max)
+    figure.subplots_adjust(left=0.085, right=0.89, top=0.88, bottom=0.085, hspace=0.1)
+    pressures = [row.pressure_bar for row in rows] + [p for e in events if (p := _pressure(e)) is not None]
+    x_max = 1.05 * max(
+        *pressures, prediction.onset_bar if prediction else 0.0
+    )  # overshoot lies above set-points
+    top.set_xlim(0, x_max)
     handles: list[Line2D | Patch] = []
     _draw_events(top, events)
     if prediction is not None:
-        handles.append(_draw_prediction(top, bottom, prediction, 1.06 * x_max))
+        handles.append(_draw_prediction(top, bottom, prediction, x_max))
     onset = occurrence.onset_bar(table)
     if onset is not None:
-        for axes in (top, bottom):
-            axes.axvline(onset, color=BLUE, lw=1.4, ls=(0, (1, 1.2)), zorder=2)
+        for axes, height in ((top, 1.0), (bottom, _BARS)):
+            axes.axvline(onset, ymax=height, color=BLUE, lw=1.4, ls=(0, (1, 1.2)), zorder=2)
         handles.append(
             Line2D([], [], color=BLUE, lw=1.4, ls=(0, (1, 1.2)), label=f"measured onset {onset:g} bar")
         )
-    frequencies = [e.frequency_hz for e in events] + ([prediction.frequency_hz] if prediction else [])
-    top.set_ylim(1.0, max(4.0, 1.12 * max(frequencies, default=0.0) / 1000))
-    top.set_ylabel("frequency [kHz]")
+    top.set_ylim(*_frequency_range_khz(events, prediction))
+    label_axes(top, y="frequency [kHz]")
     figure.suptitle("Squeal over brake pressure", x=0.085, y=0.975, **TITLE)
     grid(top)
     if not events:
@@ -75,9 +84,16 @@ def pressure_frequency(table: CampaignTable, prediction: Prediction | None) -> F
     if handles:
         place = (0.085, 0.935)
         figure.legend(handles=handles, loc="upper left", ncols=2, bbox_to_anchor=place, borderaxespad=0)
-    _level_bar(figure, (0.915, 0.35, 0.018, 0.53))
+    _level_bar(top)
     _occurrence_bars(bottom, rows)
     return figure
+
+
+def _frequency_range_khz(events: tuple[EventRow, ...], prediction: Prediction | None) -> tuple[float, float]:
+    """From 1 to 4 kHz, further by whole kHz where events or the prediction are."""
+    found = [e.frequency_hz / 1000 for e in events] + ([prediction.frequency_hz / 1000] if prediction else [])
+    low, high = min(found, default=1.5), max(found, default=1.5)
+    return (1.0 if low >= _LOW_KHZ else 0.0), max(4.0, float(np.ceil(1.04 * high)))
 
 
 def _draw_events(axes: Axes, events: tuple[EventRow, ...]) -> None:
@@ -108,8 +124,8 @@ def _draw_prediction(top: Axes, bottom: Axes, prediction: Prediction, x_max: flo
     look = {"color": GREEN, "lw": 1.6, "ls": (0, (5, 2))}
     top.fill_between([onset, x_max], 0.985 * f_khz, 1.015 * f_khz, color=GREEN, alpha=0.13, lw=0)
     top.plot([onset, x_max], [f_khz, f_khz], **look, zorder=2)
-    for axes in (top, bottom):
-        axes.axvline(onset, **look, zorder=2)
+    for axes, height in ((top, 1.0), (bottom, _BARS)):
+        axes.axvline(onset, ymax=height, **look, zorder=2)
     top.plot(onset, f_khz, marker="D", ms=7, color=GREEN, mec="white", zorder=4)
     label = f"predicted ({prediction.label}): {prediction.frequency_hz:.0f} Hz from {onset:.1f} bar"
     return Line2D([], [], marker="D", mec="white", ms=7, label=label, **look)
@@ -130,18 +146,16 @@ def _occurrence_bars(axes: Axes, rows: tuple[occurrence.PressureRow, ...]) -> No
             fontsize=7,
             color=GREY,
         )
-    axes.set_ylim(0, 1.2)
+    axes.set_ylim(0, 1.0 / _BARS)
     axes.set_yticks([0, 0.5, 1.0])
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_ylabel("squealing")
-    axes.set_xlabel("brake pressure [bar]  (dots: at the loudest moment; bars: set-point)")
+    x_label = "brake pressure [bar]  (dots: at the loudest moment; bars: set-point)"
+    label_axes(axes, x_label, "squealing", y_gap_pt=35.0)
 
 
-def _level_bar(figure: Figure, rectangle: tuple[float, float, float, float]) -> None:
-    axes = figure.add_axes(rectangle)
-    bar = figure.colorbar(ScalarMappable(LEVEL_NORM, LEVEL_MAP), cax=axes, extend="both", extendfrac=0.03)
-    bar.set_label("squeal level [dB re 20 µPa]")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+def _level_bar(axes: Axes) -> None:
+    levels = ScalarMappable(LEVEL_NORM, LEVEL_MAP)
+    colour_bar(axes, levels, "squeal level [dB re 20 µPa]", extend="both", extendfrac=0.03)
 
 
 def pressure_temperature(table: CampaignTable, prediction: Prediction | None) -> Figure | None:
@@ -151,7 +165,7 @@ def pressure_temperature(table: CampaignTable, prediction: Prediction | None) ->
         return None
     figure = new_figure(8.0, 4.9)
     axes = figure.subplots()
-    figure.subplots_adjust(left=0.085, right=0.895, top=0.85, bottom=0.105)
+    figure.subplots_adjust(left=0.085, right=0.89, top=0.85, bottom=0.105)
     x, y = _edges(cells.pressures_bar), _edges(cells.temperatures_degc)
     quiet = np.where((cells.brakings > 0) & (cells.squealing == 0), 1.0, np.nan)
     axes.pcolormesh(x, y, quiet, cmap=ListedColormap([PALE]), edgecolors="white", linewidth=1.2)
@@ -180,10 +194,9 @@ def pressure_temperature(table: CampaignTable, prediction: Prediction | None) ->
     figure.legend(handles=handles, loc="upper left", ncols=3, bbox_to_anchor=(0.085, 0.92), borderaxespad=0)
     title = "Squealing / all brakings" if many else "Loudest squeal per set-point"
     figure.suptitle(title, x=0.085, y=0.975, **TITLE)
-    axes.set_xlabel("brake pressure, set-point [bar]")
-    axes.set_ylabel("disc temperature, set-point [°C]")
+    label_axes(axes, "brake pressure, set-point [bar]", "disc temperature, set-point [°C]", x_gap_pt=17.0)
     _ticks_at(axes, cells.pressures_bar, cells.temperatures_degc)
-    _level_bar(figure, (0.915, 0.105, 0.018, 0.745))
+    _level_bar(axes)
     return figure
 
 
@@ -208,18 +221,15 @@ def friction_over_pressure_temperature(table: CampaignTable) -> Figure | None:
     if cells.mu.size == 0:
         return None
     figure = new_figure(9.6, 4.3)
-    left, right = figure.subplots(1, 2, width_ratios=(1.12, 1.0))
-    figure.subplots_adjust(left=0.07, right=0.985, top=0.9, bottom=0.125, wspace=0.34)
+    left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.0))
+    figure.subplots_adjust(left=0.07, right=0.985, top=0.9, bottom=0.125, wspace=0.456)
     x, y = _edges(cells.pressures_bar), _edges(cells.temperatures_degc)
     mesh = left.pcolormesh(
         x, y, np.ma.masked_invalid(cells.mu), cmap="cividis", edgecolors="white", linewidth=0.8
     )
-    bar = figure.colorbar(mesh, ax=left, pad=0.02, fraction=0.05)
-    bar.set_label("mean µ [–]")
-    bar.outline.set_visible(False)  # type: ignore[operator]
-    left.set_title("Coefficient of friction per set-point")
-    left.set_xlabel("brake pressure, set-point [bar]")
-    left.set_ylabel("disc temperature, set-point [°C]")
+    colour_bar(left, mesh, "mean µ [–]", 0.455, gap_pt=31.0)
+    axes_title(left, "Coefficient of friction per set-point")
+    label_axes(left, "brake pressure, set-point [bar]", "disc temperature, set-point [°C]", x_gap_pt=17.0)
     _ticks_at(left, cells.pressures_bar, cells.temperatures_degc)
     n = cells.pressures_bar.size
     chosen = sorted({round(k) for k in np.linspace(0, n - 1, min(6, n))})
@@ -230,9 +240,8 @@ def friction_over_pressure_temperature(table: CampaignTable) -> Figure | None:
         right.plot(
             cells.temperatures_degc, cells.mu[:, k], marker=marker, ms=4.5, lw=1.5, color=shade, label=label
         )
-    right.set_xlabel("disc temperature, set-point [°C]")
-    right.set_ylabel("mean µ [–]")
-    right.set_title("Over temperature, for some pressures")
+    label_axes(right, "disc temperature, set-point [°C]", "mean µ [–]", y_gap_pt=31.0)
+    axes_title(right, "Over temperature, for some pressures")
     right.legend(ncols=2)
     right.margins(y=0.12)
     grid(right)
@@ -278,9 +287,8 @@ def friction_over_number(table: CampaignTable) -> Figure | None:
             mew=0.9,
             label="squealed",
         )
-    axes.set_xlabel("number of the braking")
-    axes.set_ylabel("mean µ [–]  (bar: ± std in time)")
-    axes.set_title("Friction over the campaign", pad=16)
+    label_axes(axes, "number of the braking", "mean µ [–]  (bar: ± std in time)", y_gap_pt=31.0)
+    figure.suptitle("Friction over the campaign", x=0.085, y=0.965, **TITLE)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.margins(x=0.02, y=0.1)
     figure.legend(loc="upper right", ncols=5, bbox_to_anchor=(0.98, 0.97), borderaxespad=0)
@@ -311,9 +319,8 @@ def level_distribution(table: CampaignTable) -> Figure | None:
     _, _, patches = left.hist(levels, bins=bins.tolist(), edgecolor="white")
     for patch, centre in zip(patches, (bins[:-1] + bins[1:]) / 2, strict=True):  # type: ignore[call-overload]
         patch.set_facecolor(LEVEL_MAP(LEVEL_NORM(centre)))
-    left.set_xlabel("level of the loudest squeal [dB re 20 µPa]")
-    left.set_ylabel("brakings")
-    left.set_title(f"Levels of {levels.size} squealing brakings")
+    label_axes(left, "level of the loudest squeal [dB re 20 µPa]", "brakings", y_gap_pt=23.0)
+    axes_title(left, f"Levels of {levels.size} squealing brakings")
     left.yaxis.set_major_locator(MaxNLocator(integer=True))
     grid(left, "y")
     ordered = np.sort(levels)
@@ -332,8 +339,8 @@ def level_distribution(table: CampaignTable) -> Figure | None:
     right.set_xlim(low - 0.02 * (high - low), high)
     right.set_ylim(0, max(0.1, 1.2 * above.max()))
     right.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
-    right.set_xlabel("level L [dB re 20 µPa]")
-    right.set_title(f"Share of all {len(base)} brakings that reach L")
+    label_axes(right, "level L [dB re 20 µPa]")
+    axes_title(right, f"Share of all {len(base)} brakings that reach L")
     grid(right)
     return figure
 
@@ -352,16 +359,13 @@ def frequency_over_temperature(table: CampaignTable) -> Figure | None:
     temperature, frequency, pressure = (np.array(column) for column in zip(*points, strict=True))
     figure = new_figure(8.0, 3.5)
     axes = figure.subplots()
-    figure.subplots_adjust(left=0.095, right=0.99, top=0.9, bottom=0.14)
+    figure.subplots_adjust(left=0.105, right=0.89, top=0.9, bottom=0.14)
     dots = axes.scatter(
         temperature, frequency, c=pressure, cmap="cividis", s=26, edgecolors="white", linewidths=0.5
     )
-    bar = figure.colorbar(dots, ax=axes, pad=0.02)
-    bar.set_label("brake pressure [bar]")
-    bar.outline.set_visible(False)  # type: ignore[operator]
-    axes.set_xlabel("disc temperature at the loudest moment [°C]")
-    axes.set_ylabel("frequency [Hz]")
-    axes.set_title("Squeal frequency over disc temperature")
+    colour_bar(axes, dots, "brake pressure [bar]", ticks=MaxNLocator(6, integer=True))
+    label_axes(axes, "disc temperature at the loudest moment [°C]", "frequency [Hz]", y_gap_pt=44.0)
+    text = "Squeal frequency over disc temperature"
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.margins(x=0.04, y=0.15)
     middle = float(np.median(frequency))
@@ -370,6 +374,7 @@ def frequency_over_temperature(table: CampaignTable) -> Figure | None:
         near = frequency[~outside]
         room = max(20.0, 0.2 * float(np.ptp(near)))
         axes.set_ylim(near.min() - room, near.max() + room)
-        axes.set_title(f"Squeal frequency over disc temperature ({np.count_nonzero(outside)} events outside)")
+        text += f" ({np.count_nonzero(outside)} events outside)"
+    axes_title(axes, text)
     grid(axes)
     return figure

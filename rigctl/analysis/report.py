@@ -11,10 +11,11 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
@@ -24,8 +25,9 @@ from rigctl.analysis import figures, occurrence
 from rigctl.analysis.campaign_table import BrakingRow, CampaignTable, EventRow, read_campaign, write_csv
 from rigctl.analysis.prediction import Prediction
 from rigctl.analysis.spectrogram_figure import braking_spectrogram
-from rigctl.analysis.style import STYLE, Rendered, render
+from rigctl.analysis.style import Rendered, drawing, render
 from rigctl.analysis.summary import Summary, in_words, summarise
+from rigctl.analysis.two_processes import in_two_processes
 from rigctl.core.errors import RecordingError
 from rigctl.recording.braking_file import read_braking
 
@@ -57,11 +59,8 @@ class _Plot:
 
 @dataclass(frozen=True, slots=True)
 class _Embedded:
-    name: str
-    section: str
-    caption: str
+    plot: _Plot
     source: str
-    absent: str
 
 
 def build_report(
@@ -92,11 +91,13 @@ def build_report(
     folder = campaign_dir / "report"
     try:
         folder.mkdir(exist_ok=True)
-        with mpl.rc_context(STYLE):
-            embedded = [_make(plot, folder) for plot in _plots(table, campaign_dir, prediction)]
+        with drawing():
+            plots = _plots(table, campaign_dir, prediction)
+            sources = in_two_processes([partial(_make, plot, folder) for plot in plots])
+        pictures = [_Embedded(plot, source) for plot, source in zip(plots, sources, strict=True)]
         _replace(folder / "brakings.csv", lambda path: write_csv(path, table.brakings, BrakingRow))
         _replace(folder / "events.csv", lambda path: write_csv(path, table.events, EventRow))
-        page = _page(campaign_dir, table, summary, embedded, dict(info or {}))
+        page = _page(campaign_dir, table, summary, pictures, dict(info or {}))
         target = folder / "report.html"
         _replace(target, lambda path: path.write_text(page, encoding="utf-8"))
     except OSError as error:
@@ -184,17 +185,18 @@ def _loudest_spectrogram(table: CampaignTable, campaign_dir: Path) -> Figure | N
     return braking_spectrogram(campaign_dir / "brakings" / braking.file, braking, events)
 
 
-def _make(plot: _Plot, folder: Path) -> _Embedded:
+def _make(plot: _Plot, folder: Path) -> str:
+    """Draw, write both files, and return what the page embeds; "" when there is nothing to draw."""
     figure = plot.draw()
     png, svg = folder / f"{plot.name}.png", folder / f"{plot.name}.svg"
     if figure is None:
         for stale in (png, svg):
             stale.unlink(missing_ok=True)
-        return _Embedded(plot.name, plot.section, plot.caption, "", plot.absent)
+        return ""
     rendered = render(figure)
     _replace(png, lambda path: path.write_bytes(rendered.png))
     _replace(svg, lambda path: path.write_text(rendered.svg, encoding="utf-8"))
-    return _Embedded(plot.name, plot.section, plot.caption, _data_uri(rendered), plot.absent)
+    return _data_uri(rendered)
 
 
 def _data_uri(rendered: Rendered) -> str:
@@ -214,7 +216,7 @@ def _page(
     campaign_dir: Path,
     table: CampaignTable,
     summary: Summary,
-    embedded: list[_Embedded],
+    pictures: list[_Embedded],
     info: dict[str, str],
 ) -> str:
     environment = Environment(
@@ -226,19 +228,20 @@ def _page(
     environment.globals.update(number=_number, picture=_picture)
     squeals = table.events
     name = campaign_dir.resolve().name
-    first = table.brakings[0].start_time if table.brakings else ""
+    first = _moment(table.brakings[0].start_time) if table.brakings else ""
     return environment.get_template("report.html.j2").render(
         version=__version__,
         title=f"Brake noise campaign {name}",
         subtitle=" · ".join(part for part in (*_named(info, "program", "rig"), first) if part),
         tiles=_tiles(summary),
         sentences=in_words(summary),
-        figures=embedded,
+        pictures=pictures,
         pressures=occurrence.by_pressure(table),
         thresholds=occurrence.occurrence_per_threshold(table),
         bands=occurrence.events_per_band(table),
         events=squeals,
         n_harmonics=sum(1 for e in squeals if e.harmonic),
+        brakings=table.brakings,
         incomplete=table.incomplete(),
         unreadable=table.unreadable,
         info=[*info.items(), *_found_info(table)],
@@ -257,17 +260,18 @@ def _tiles(s: Summary) -> list[tuple[str, str]]:
     if s.n_with_sound:
         tiles.append((f"{s.n_squealing}", f"squealing brakings of {s.n_with_sound} with sound"))
     if s.onset_bar is not None:
-        predicted = f", predicted {s.predicted_onset_bar:.1f}" if s.predicted_onset_bar is not None else ""
+        bar = s.predicted_onset_bar
+        predicted = f", predicted {bar:.1f} bar" if bar is not None else ""
         tiles.append((f"{s.onset_bar:g} bar", f"onset of squeal{predicted}"))
     if s.frequency_median_hz is not None:
         predicted = (
-            f", predicted {s.predicted_frequency_hz:.0f}" if s.predicted_frequency_hz is not None else ""
+            f", predicted {s.predicted_frequency_hz:.0f} Hz" if s.predicted_frequency_hz is not None else ""
         )
         tiles.append((f"{s.frequency_median_hz:.0f} Hz", f"median squeal frequency{predicted}"))
     if s.level_max_db is not None:
         tiles.append((f"{s.level_max_db:.1f} dB", "loudest squeal"))
     if s.mu_min is not None and s.mu_max is not None:
-        tiles.append((f"{s.mu_min:.2f} … {s.mu_max:.2f}", "mean µ of the brakings"))
+        tiles.append((f"{s.mu_min:.2f}\u2013{s.mu_max:.2f}", "mean µ of the brakings"))
     return tiles
 
 
@@ -279,8 +283,8 @@ def _found_info(table: CampaignTable) -> list[tuple[str, str]]:
     for braking in table.brakings:
         roles[braking.role] = roles.get(braking.role, 0) + 1
     return [
-        ("first braking", table.brakings[0].start_time),
-        ("last braking", table.brakings[-1].start_time),
+        ("first braking", f"{_moment(table.brakings[0].start_time)} (rig clock)"),
+        ("last braking", f"{_moment(table.brakings[-1].start_time)} (rig clock)"),
         ("brakings per role", ", ".join(f"{n} {role}" for role, n in roles.items())),
     ]
 
@@ -298,9 +302,19 @@ def _number(value: float | None, form: str) -> str:
     return "–" if value is None else form % value
 
 
-def _picture(figure: _Embedded) -> Markup:
-    if not figure.source:
-        return Markup('<div class="card soft">{}</div>\n').format(figure.absent)
+def _moment(iso: str) -> str:
+    """2000-01-01T00:00:03.350000+00:00 -> 2000-01-01 00:00:03 UTC; other texts as they are."""
+    try:
+        moment = datetime.fromisoformat(iso)
+    except ValueError:
+        return iso
+    return f"{moment:%Y-%m-%d %H:%M:%S} {moment.tzname() or ''}".strip()
+
+
+def _picture(picture: _Embedded) -> Markup:
+    plot = picture.plot
+    if not picture.source:
+        return Markup('<div class="card soft">{}</div>\n').format(plot.absent)
     return Markup('<figure><img src="{}" alt="{}"><figcaption>{} (<a href="{}.png">PNG</a>, ').format(
-        figure.source, figure.caption, figure.caption, figure.name
-    ) + Markup('<a href="{}.svg">SVG</a>)</figcaption></figure>\n').format(figure.name)
+        picture.source, plot.caption, plot.caption, plot.name
+    ) + Markup('<a href="{}.svg">SVG</a>)</figcaption></figure>\n').format(plot.name)

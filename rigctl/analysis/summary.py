@@ -10,6 +10,9 @@ from rigctl.analysis.campaign_table import CampaignTable
 from rigctl.analysis.friction_map import BEDDING, brakings_with_mu
 from rigctl.analysis.prediction import Prediction
 
+_FINE_HZ = 10.0
+"""Frequencies closer together than this are told with a decimal."""
+
 
 @dataclass(frozen=True, slots=True)
 class Summary:
@@ -104,11 +107,13 @@ def _squeal(s: Summary) -> tuple[str, ...]:
         return ()
     if s.n_squealing == 0:
         return (f"No squeal was found ({_count(s.n_with_sound, 'braking')} with sound).",)
+    low, high = s.frequency_low_hz or 0.0, s.frequency_high_hz or 0.0
+    digits = 0 if high - low >= _FINE_HZ else 1
     sentences = [
         f"{_count(s.n_squealing, 'braking')} squealed ({_percent(s.occurrence_share)}), "
         f"with {_count(s.n_events, 'event')} in all.",
         f"The squeal frequency is {s.frequency_median_hz:.0f} Hz (median; half of the brakings lie between "
-        f"{s.frequency_low_hz:.0f} and {s.frequency_high_hz:.0f} Hz).",
+        f"{low:.{digits}f} and {high:.{digits}f} Hz).",
         f"The loudest squeal reached {s.level_max_db:.1f} dB"
         + (f" ({s.level_max_dba:.1f} dB(A))" if s.level_max_dba is not None else "")
         + f", the median of the squealing brakings is {s.level_median_db:.1f} dB.",

@@ -1,7 +1,10 @@
 """The report: complete, self-contained, and honest when there is little to report."""
 
 import base64
+import gc
 import re
+import threading
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import matplotlib as mpl
@@ -13,7 +16,12 @@ from rigctl.analysis import figures
 from rigctl.analysis.campaign_table import read_campaign
 from rigctl.analysis.prediction import Prediction
 from rigctl.analysis.report import build_report, loudest_braking
+from rigctl.analysis.spectrogram_figure import braking_spectrogram, power_pa2
+from rigctl.analysis.style import drawing
+from rigctl.core.channels import ChannelData
 from rigctl.core.errors import RecordingError
+from rigctl.recording.braking_file import read_braking
+from rigctl.signals.spectra import spectrogram
 
 PREDICTION = Prediction(15.0, 2140.0, "model")
 TONE = (2350.0, 80.0, 1.0, 2.3)
@@ -52,6 +60,11 @@ class Page(HTMLParser):
 
     def handle_data(self, data):
         self.words.append(data)
+
+
+@pytest.fixture(scope="module")
+def table(matrix_campaign):
+    return read_campaign(matrix_campaign)
 
 
 @pytest.fixture(scope="module")
@@ -108,15 +121,23 @@ def test_report_says_what_was_found(built):
 def test_building_twice_gives_the_same_files_and_leaves_no_global_state(matrix_campaign, built):
     result, text = built
     settings = dict(mpl.rcParams)
+    stop = threading.Event()
+    other = threading.Thread(target=stop.wait)  # the second time in one process
+    other.start()
     before = {p.name: p.read_bytes() for p in result.path.parent.iterdir()}
-    build_report(
-        matrix_campaign,
-        prediction=PREDICTION,
-        info={"Program": "squeal_matrix", "seed": "7", "note": "<script>alert(1)</script>"},
-    )
+    try:
+        build_report(
+            matrix_campaign,
+            prediction=PREDICTION,
+            info={"Program": "squeal_matrix", "seed": "7", "note": "<script>alert(1)</script>"},
+        )
+    finally:
+        stop.set()
+        other.join()
     assert {p.name: p.read_bytes() for p in result.path.parent.iterdir()} == before
     assert text == result.path.read_text(encoding="utf-8")
     assert dict(mpl.rcParams) == settings
+    assert gc.isenabled()
 
 
 def test_no_squeal_is_said_and_old_figures_do_not_stay(campaign):
@@ -170,8 +191,7 @@ def test_a_report_that_cannot_be_written_is_one_clear_error(campaign):
         build_report(folder, prediction=None, info={})
 
 
-def test_loudest_braking(matrix_campaign, campaign):
-    table = read_campaign(matrix_campaign)
+def test_loudest_braking(table, campaign):
     loudest = loudest_braking(table)
     assert loudest.squeal_level_db == max(e.level_db for e in table.squeals())
     silent = loudest_braking(read_campaign(campaign(Case(0), Case(0))))
@@ -179,8 +199,7 @@ def test_loudest_braking(matrix_campaign, campaign):
     assert silent.squeal_level_db is None
 
 
-def test_every_squeal_is_a_dot_at_its_pressure_and_frequency_and_the_prediction_is_drawn(matrix_campaign):
-    table = read_campaign(matrix_campaign)
+def test_every_squeal_is_a_dot_at_its_pressure_and_frequency_and_the_prediction_is_drawn(table):
     figure = figures.pressure_frequency(table, PREDICTION)
     top = figure.axes[0]
     dots = next(c for c in top.collections if len(c.get_offsets()) == 3 and hasattr(c, "get_sizes"))
@@ -193,8 +212,7 @@ def test_every_squeal_is_a_dot_at_its_pressure_and_frequency_and_the_prediction_
     assert not [line for line in without.axes[0].lines if line.get_marker() == "D"]
 
 
-def test_all_axes_are_labelled_with_units(matrix_campaign):
-    table = read_campaign(matrix_campaign)
+def test_all_axes_are_labelled_with_units(table):
     made = [
         figures.pressure_frequency(table, PREDICTION),
         figures.pressure_temperature(table, PREDICTION),
@@ -206,3 +224,68 @@ def test_all_axes_are_labelled_with_units(matrix_campaign):
         units = [a.get_xlabel() for a in figure.axes if a.get_xlabel()]
         assert units
         assert all("[" in text for text in units)
+
+
+def _with_events(table, *changes):
+    """The table with its squeals replaced by changed copies of the first one."""
+    first = table.squeals()[0]
+    return replace(table, events=tuple(replace(first, **change) for change in changes))
+
+
+@pytest.mark.parametrize(
+    ("events", "limits_khz"),
+    [
+        ([{"pressure_bar": 24.5}], (1.0, 4.0)),
+        ([{"frequency_hz": 5600.0}], (1.0, 6.0)),
+        ([{"frequency_hz": 1020.0}, {"frequency_hz": 15900.0, "pressure_bar": 31.9}], (0.0, 17.0)),
+    ],
+)
+def test_the_axes_hold_every_dot_as_a_whole(table, events, limits_khz):
+    figure = figures.pressure_frequency(_with_events(table, *events), PREDICTION)
+    top = figure.axes[0]
+    assert top.get_ylim() == limits_khz
+    dots = next(c for c in top.collections if hasattr(c, "get_sizes") and len(c.get_offsets()) == len(events))
+    centres = top.transData.transform(np.asarray(dots.get_offsets()))
+    radius = np.sqrt(dots.get_sizes() / np.pi)[:, None] * figure.dpi / 72
+    assert (centres - radius >= (top.bbox.x0, top.bbox.y0)).all()
+    assert (centres + radius <= (top.bbox.x1, top.bbox.y1)).all()
+
+
+def test_no_text_is_cut_off_at_the_edge_of_a_figure(table, matrix_campaign):
+    loudest = loudest_braking(table)
+    with drawing():
+        made = [
+            figures.pressure_frequency(table, PREDICTION),
+            figures.pressure_temperature(table, PREDICTION),
+            figures.friction_over_pressure_temperature(table),
+            figures.friction_over_number(table),
+            figures.level_distribution(table),
+            figures.frequency_over_temperature(table),
+            braking_spectrogram(matrix_campaign / "brakings" / loudest.file, loudest, table.events),
+        ]
+        for figure in made:
+            box = figure.get_tightbbox()
+            width, height = figure.get_size_inches()
+            assert box.x0 >= 0, figure
+            assert box.y0 >= 0, figure
+            assert box.x1 <= width, figure
+            assert box.y1 <= height, figure
+
+
+def test_the_spectrogram_has_the_numbers_of_the_evaluation(table, matrix_campaign):
+    sound = read_braking(matrix_campaign / "brakings" / loudest_braking(table).file).channels["microphone"]
+    expected = spectrogram(
+        sound.samples, sound.spec.rate_hz, fft_size=2048, hop=1024, scale=sound.spec.scale
+    ).power
+    found = power_pa2(sound)
+    assert found.shape == expected.shape
+    np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-6 * expected.max())
+    short = ChannelData(sound.spec, 0.0, sound.samples[:100])
+    assert power_pa2(short).shape == (0, 1025)
+
+
+def test_text_in_svg_is_text(built):
+    result, _ = built
+    svg = (result.path.parent / "squeal_pressure_frequency.svg").read_text(encoding="utf-8")
+    assert "measured onset 12 bar" in svg
+    assert "sans-serif" in svg
