@@ -34,7 +34,7 @@ _Ranges = list[tuple[int, int]]
 
 def _continues(ranges: _Ranges, before: _Ranges) -> bool:
     """True when the range of every channel begins where the one before it ended."""
-    return all([start == stop for (start, _), (_, stop) in zip(ranges, before, strict=True)])  # noqa: C419
+    return all([start == stop for (start, _), (_, stop) in zip(ranges, before, strict=True)])
 
 
 class RecorderClient:
@@ -71,7 +71,8 @@ class RecorderClient:
         self._window_s = window_s
         self._names: tuple[str, ...] | None = None
         self._copied_s = 0.0
-        self._start_ns = self._stop_ns = self._full_ns = 0  # rig time of the blocks held back; none when equal
+        self._start_ns = self._stop_ns = 0  # rig time of the blocks held back; none when equal
+        self._full_ns = 0  # they go with the first block from here on
         self._first: _Ranges = []  # of the first and the last of them
         self._last: _Ranges = []
         self._events: list[Message] = []

@@ -4,11 +4,11 @@ Job: groups, attributes and data sets with little ceremony and little time, and 
 HDF5 never touches the disk here: on a full disk it brings the interpreter down (h5py#914), our own writes
 report it. NOT its job: what is in the file (`nexus`), compression (`packing`), the disk (`durable`).
 
-A braking file has some two hundred objects and as many attributes, nearly all the same from braking to
+A braking file has more than a hundred objects and as many attributes, nearly all the same from braking to
 braking, and making one takes ten times as long as filling it. So a file is described first, its values apart
 from its structure (names, types, lengths, fixed attributes). The structure alone becomes a file without
-values, the skeleton, which is kept; a copy of it is opened and filled. The skeleton does not depend on values,
-so the bytes of a file depend on its description only, not on the files that were made before.
+values, the skeleton, which is kept; a copy of it is opened and filled. The skeleton does not depend on
+values, so the bytes of a file depend on its description only, not on the files that were made before.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import count
-from typing import Any, Final
+from typing import Any
 
 import h5py
 import numpy as np

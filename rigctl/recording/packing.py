@@ -52,7 +52,7 @@ def _pack_one(values: NDArray[Any], length: int) -> bytes:
     planes = _planes(values, length).data.cast("B")
     noise = length * (values.itemsize // 2)
     packer = zlib.compressobj(1, zlib.DEFLATED, _RAW)
-    parts = [_ZLIB_HEAD]
+    parts: list[bytes | memoryview] = [_ZLIB_HEAD]
     for at in range(0, noise, _STORED_BYTES):
         block = planes[at : min(at + _STORED_BYTES, noise)]
         parts += (_STORED_HEAD.pack(0, len(block), len(block) ^ 0xFFFF), block)

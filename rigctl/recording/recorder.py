@@ -5,8 +5,8 @@ overwritten, flush at least once a second, say what is safe; hand ended brakings
 controller dies or a stop is asked for, the running braking is ended as incomplete and all files are made.
 NOT its job: deciding what is recorded, safety of the rig, recovery of an earlier run (`recovery`).
 
-One thread copies, a second one makes files (`finaliser`): copying a block takes 0.2 ms, making a file 50 ms,
-and in virtual time the 16 s of the ring may pass in that time.
+One thread copies, a second one makes files (`finaliser`): copying a quarter of a second takes 0.2 ms, making
+a file 40 ms, and in virtual time the 16 s of the ring may pass in that time.
 """
 
 from __future__ import annotations

@@ -8,11 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from numpy.typing import NDArray
+
 from rigctl.core.errors import RecordingError
 from rigctl.core.ring import SampleRing
 from rigctl.recording.braking import decimation_factors
 from rigctl.recording.campaign import Campaign
 from rigctl.recording.spool import MISSING_MARK, STARTED_MARK, SpoolWriter
+
+_Part = tuple[int, int, NDArray[Any]]
+"""Number of the channel, count of its first sample, samples."""
 
 
 class RunningBraking:
@@ -57,30 +62,47 @@ class RunningBraking:
     def block(
         self, begin_s: float, end_s: float, ranges: Sequence[Sequence[int]], keep_waiting: Callable[[], bool]
     ) -> None:
-        """Copy one block: `ranges` holds [start, stop) of the ring's counts for each recorded channel.
+        """Copy one block, or several in a row.
 
+        `ranges` holds [start, stop) of the ring's counts for each recorded channel.
         Samples that the ring no longer holds, or never gets, leave a gap (`gap`); the rest is still worth it.
         """
         if not self._started:
             self._spool.mark(STARTED_MARK, begin_s, {"first": [start for start, _ in ranges]})
             self._started = True
         try:
-            parts = [
-                (number, start, self._ring.read(name, start, stop, keep_waiting=keep_waiting))
-                for number, (name, (start, stop)) in enumerate(zip(self._names, ranges, strict=True))
-                if stop > start
-            ]
+            parts = self._read(ranges, keep_waiting)
         except RecordingError as error:
             self.gap = self.gap or error
-            return
+            parts = self._read_what_is_there(ranges)
+            if not parts:
+                return
         self._spool.append(parts, end_s)
+
+    def _read(self, ranges: Sequence[Sequence[int]], keep_waiting: Callable[[], bool]) -> list[_Part]:
+        return [
+            (number, start, self._ring.read(name, start, stop, keep_waiting=keep_waiting))
+            for number, (name, (start, stop)) in enumerate(zip(self._names, ranges, strict=True))
+            if stop > start
+        ]
+
+    def _read_what_is_there(self, ranges: Sequence[Sequence[int]]) -> list[_Part]:
+        """The part of each range that the ring holds; nothing when that is overwritten at this moment."""
+        held = []
+        for name, (start, stop) in zip(self._names, ranges, strict=True):
+            written = self._ring.written(name)
+            held.append((max(start, written - self._ring.capacity(name)), min(stop, written)))
+        try:
+            return self._read(held, lambda: False)
+        except RecordingError:
+            return []
 
     def mark(self, name: str, t_s: float, values: dict[str, Any]) -> None:
         """State what happened at rig time `t_s`."""
         self._spool.mark(name, t_s, values)
 
     def flush_if_due(self) -> bool:
-        """Flush when the last flush is half a second ago; True when it did."""
+        """Flush when the last flush is `spool.SYNC_PERIOD_S` ago; True when it did."""
         return self._spool.sync_if_due()
 
     def end(self, status: str, note: str) -> None:

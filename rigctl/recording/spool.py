@@ -36,7 +36,11 @@ COVERED_FROM: Final = 8  # first byte of a frame that its CRC covers
 _COVERED_HEAD = struct.Struct("<BBHIIQ")
 _CRC = struct.Struct("<I")
 MAX_PAYLOAD: Final = 64 * 1024 * 1024
-SYNC_PERIOD_S: Final = 0.5  # wall time; "at least once a second" with room for a slow disk
+SYNC_PERIOD_S: Final = 0.4
+"""Wall time between two flushes. In real time samples are at most 0.3 s old when they come
+(`client.MERGED_NS` and a block), and a flush that is due is noticed within 0.2 s (`recorder.POLL_MS`):
+together less than 1 s.
+"""
 
 KIND_HEADER, KIND_DATA, KIND_MARK, KIND_END = 1, 2, 3, 4
 STARTED_MARK: Final = "recording_started"
@@ -45,10 +49,17 @@ MISSING_MARK: Final = "samples_missing"
 """Mark of a spool into which some samples never came."""
 
 
+def frame_head(
+    kind: int, channel: int, sequence: int, first_sample: int, payload: bytes | memoryview
+) -> bytes:
+    """The head of a frame with this payload."""
+    head = _COVERED_HEAD.pack(kind, channel, 0, len(payload), sequence, first_sample)
+    return MAGIC + _CRC.pack(crc32(payload, crc32(head))) + head
+
+
 def frame(kind: int, channel: int, sequence: int, first_sample: int, payload: bytes | memoryview) -> bytes:
     """One frame, head and payload, ready to be appended."""
-    head = _COVERED_HEAD.pack(kind, channel, 0, len(payload), sequence, first_sample)
-    return b"".join((MAGIC, _CRC.pack(crc32(payload, crc32(head))), head, payload))
+    return b"".join((frame_head(kind, channel, sequence, first_sample, payload), payload))
 
 
 def little_endian(dtype: str) -> np.dtype[Any]:
@@ -122,7 +133,7 @@ class SpoolWriter:
         return writer
 
     def append(self, parts: Iterable[tuple[int, int, NDArray[Any]]], end_s: float) -> None:
-        """Append the samples of one block with one write.
+        """Append the samples of one or more blocks with one write.
 
         Parameters
         ----------
@@ -131,13 +142,13 @@ class SpoolWriter:
         end_s : float
             Rig time at the end of the block.
         """
-        pieces: list[bytes] = []
+        pieces: list[bytes | memoryview] = []  # head, payload, head, payload, ...
         sequence = self._sequence
         for channel, first, samples in parts:
             payload = np.ascontiguousarray(samples, self._dtypes[channel]).data.cast("B")
-            pieces.append(frame(KIND_DATA, channel, sequence, first, payload))
+            pieces += (frame_head(KIND_DATA, channel, sequence, first, payload), payload)
             sequence += 1
-        self._append(b"".join(pieces), len(pieces))
+        self._append(b"".join(pieces), len(pieces) // 2)
         self.written_s = end_s
 
     def mark(self, name: str, t_s: float, values: dict[str, Any]) -> None:

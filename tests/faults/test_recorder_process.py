@@ -26,7 +26,7 @@ from rigctl.core.errors import LinkClosed, RecordingError
 from rigctl.core.journal import read_journal, verify_journal
 from rigctl.recording.braking_file import read_braking, verify
 from rigctl.recording.campaign import Campaign
-from rigctl.recording.client import RecorderClient
+from rigctl.recording.client import MERGED_NS, RecorderClient
 from rigctl.recording.recovery import recover
 
 
@@ -85,20 +85,26 @@ def test_brakings_of_a_run(run: Path, campaign: Campaign) -> None:
     assert aborted.marks[0].values == {"temperature_degc": None}
 
 
-@pytest.mark.parametrize("how", ["controller dies", "SIGTERM"])
+@pytest.mark.parametrize("how", ["controller leaves", "controller dies", "SIGTERM"])
 def test_a_cut_off_braking_becomes_incomplete(run: Path, campaign: Campaign, how: str) -> None:
     recorder = forked_recorder(run, campaign.folder)
     rig = MiniRig(run)
-    client = RecorderClient.connect(run, 60.0)
     data = signals(2.0)
-    client.begin(specification(1), t0_s=0.0)
-    for block in rig.blocks(data):
-        client.block(block)
-    if how == "SIGTERM":
-        time.sleep(0.3)
-        os.kill(recorder.pid, signal.SIGTERM)
-        recorder.join(30)
-    client.close()  # else: with words of the recorder unread, as when the controller is killed
+    controller = os.fork() if how == "controller dies" else 0
+    if not controller:
+        client = RecorderClient.connect(run, 60.0)
+        client.begin(specification(1), t0_s=0.0)
+        for block in rig.blocks(data):
+            client.block(block)
+        if how == "controller dies":
+            os._exit(0)  # at once: nothing is closed, what is held back is lost
+        if how == "SIGTERM":
+            time.sleep(0.3)
+            os.kill(recorder.pid, signal.SIGTERM)
+            recorder.join(30)
+        client.close()
+    else:
+        os.waitpid(controller, 0)
     recorder.join(30)
     braking = read_braking(campaign.braking_path(1))
     assert braking.status == "incomplete"
@@ -106,10 +112,14 @@ def test_a_cut_off_braking_becomes_incomplete(run: Path, campaign: Campaign, how
         braking.summary["note"]
         == {
             "SIGTERM": "the recorder was stopped",
+            "controller leaves": "the controller has gone",
             "controller dies": "the controller has gone",
         }[how]
     )
-    np.testing.assert_array_equal(braking.channels["microphone"].samples, data["microphone"])
+    samples = braking.channels["microphone"].samples
+    lost = len(data["microphone"]) - len(samples)
+    assert lost == 0 if how == "controller leaves" else 0 <= lost <= 40000 * (MERGED_NS * 1e-9 + BLOCK_S)
+    np.testing.assert_array_equal(samples, data["microphone"][: len(samples)])
     assert campaign.completed_indices() == frozenset() and recover(campaign).nothing_to_do
 
 

@@ -1,5 +1,6 @@
 """The sample ring: what is written is read, and a reader that was too slow is told so."""
 
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,14 @@ def test_reader_waits_no_longer_than_it_says(tmp_path: Path):
         ring.read("pressure", 0, 10, timeout_s=0.02)
     with pytest.raises(RecordingError, match="has not arrived"):
         ring.read("pressure", 0, 10, keep_waiting=lambda: False)
+
+
+def test_reader_gets_samples_that_come_late(tmp_path: Path):
+    ring = SampleRing.create(tmp_path / "ring", SPECS, seconds=1.0)
+    late = threading.Timer(0.02, ring.write, ("pressure", np.arange(10, dtype=np.float32)))
+    late.start()
+    np.testing.assert_array_equal(ring.read("pressure", 2, 10, timeout_s=10.0), np.arange(2, 10))
+    late.join()
 
 
 def test_ring_keeps_the_channel_specs_for_other_processes(tmp_path: Path):

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recording_samples import SPECS, header, signals, specification, write_spool
+from recording_samples import SPECS, header, new_campaign, signals, specification, write_spool
 
 from rigctl.core.errors import RecordingError
+from rigctl.core.ring import SampleRing
 from rigctl.recording import spool as spool_module
+from rigctl.recording.running import RunningBraking
 from rigctl.recording.spool import (
     KIND_DATA,
     KIND_END,
@@ -211,3 +213,24 @@ def test_a_spool_that_says_samples_are_missing_is_not_intact(tmp_path: Path) -> 
     writer.close()
     found = read_spool(tmp_path / "s")
     assert found.end == {"status": "complete", "note": ""} and not found.intact
+
+
+def test_of_ranges_partly_overwritten_or_not_there_the_rest_is_kept(tmp_path: Path) -> None:
+    campaign = new_campaign(tmp_path)
+    ring = SampleRing.create(tmp_path / "ring", SPECS, 1.0)
+    data = signals(1.3)
+    for name, samples in data.items():
+        for part in np.array_split(samples, 2):
+            ring.write(name, part)
+    order = {"specification": specification(), "t0_s": 0.0, "epoch": "", "evaluation": {}, "metadata": {}}
+    running = RunningBraking(campaign, ring, order)
+    whole = [(0, round(1.5 * spec.rate_hz)) for spec in SPECS]  # 0.3 s overwritten, 0.2 s never delivered
+    running.block(0.0, 1.5, whole, lambda: False)
+    assert running.gap is not None
+    running.end("complete", "")
+    spool = read_spool(running.path)
+    assert not spool.intact
+    for spec in SPECS:
+        stretch, missing = spool.stretches[spec.name], round(0.3 * spec.rate_hz)
+        assert stretch.gaps == ((0, missing),)
+        np.testing.assert_array_equal(stretch.samples[missing:], data[spec.name][missing:])
