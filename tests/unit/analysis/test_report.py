@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from campaign_files import Case
 
-from rigctl.analysis import figures
+from rigctl.analysis import figures, report, style
 from rigctl.analysis.campaign_table import read_campaign
 from rigctl.analysis.prediction import Prediction
 from rigctl.analysis.report import build_report, loudest_braking
 from rigctl.analysis.spectrogram_figure import braking_spectrogram, power_pa2
-from rigctl.analysis.style import drawing
+from rigctl.analysis.style import Rendered, drawing
 from rigctl.core.channels import ChannelData
 from rigctl.core.errors import RecordingError
 from rigctl.recording.braking_file import read_braking
@@ -60,6 +60,20 @@ class Page(HTMLParser):
 
     def handle_data(self, data):
         self.words.append(data)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def small_pictures():
+    """A third of the resolution: fewer pixels to fill, everything else as in earnest."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(style, "PNG_DPI", 43)
+        yield
+
+
+@pytest.fixture
+def unrendered(monkeypatch):
+    """For tests of the page alone: figures are drawn, but not turned into pixels and paths."""
+    monkeypatch.setattr(report, "render", lambda figure: Rendered(b"PNG", "<svg/>", 1.0))
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +154,7 @@ def test_building_twice_gives_the_same_files_and_leaves_no_global_state(matrix_c
     assert gc.isenabled()
 
 
-def test_no_squeal_is_said_and_old_figures_do_not_stay(campaign):
+def test_no_squeal_is_said_and_old_figures_do_not_stay(campaign, unrendered):
     folder = campaign(Case(0, 6.0), Case(0, 20.0))
     (folder / "report").mkdir()
     (folder / "report" / "squeal_levels.png").write_bytes(b"from an earlier report")
@@ -178,7 +192,7 @@ def test_no_braking_at_all(tmp_path):
     assert result.sentences == ("No braking has been recorded.",)
 
 
-def test_bedding_only(campaign):
+def test_bedding_only(campaign, unrendered):
     result = build_report(campaign(Case(0, role="bedding", sound=False)), prediction=None, info={})
     assert "nothing can be said about squeal" in result.path.read_text(encoding="utf-8")
     assert (result.path.parent / "friction_number.png").exists()
