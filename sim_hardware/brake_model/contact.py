@@ -32,37 +32,31 @@ OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "fastmath": True, "erro
 
 
 class Coefficients(NamedTuple):
-    """Everything constant during a run. G groups, P padded modes, O outputs; complex numbers as (real,
-    imaginary).
+    """Everything constant during a run. G groups, P padded modes, O outputs.
 
-    A product of an output row with the modes is sum(row_r * re + row_i * im): the sign is in the row.
+    `modal` holds all rows over the modes, complex numbers as (real, imaginary); the integers say where each
+    kind begins. A product of a contact, ahead or output row with the modes is sum(row[0] * re + row[1] * im):
+    the sign is in the row. Few arrays: numba unpacks each of them at every call.
     """
 
     substeps: int
     fine_steps: int
     mu_ref: float
+    rotation: int  # 1 row
+    drive: int  # G
+    hold: int  # G: excitation held over the step
+    history: int  # DEPTH * G: from g[n], g[n-1], ...
+    contact: int  # 2 G: slip and compression variation from the modes (fine steps)
+    ahead: int  # 2 G: the same one main step ahead
+    fine_rotation: int  # 1
+    fine_start: int  # G
+    fine_end: int  # G
+    output: int  # O
+    modal: Array  # (rows, 2, P)
     share: Array  # (G,)
-    rotation: Array  # (2, P)
-    drive_r: Array  # (G, P)
-    drive_i: Array
-    hold_r: Array  # (G, P) excitation held over the step
-    hold_i: Array
-    history_r: Array  # (DEPTH * G, P) from g[n], g[n-1], ...
-    history_i: Array
-    contact_r: Array  # (2 G, P) slip and compression variation from the modes (fine steps)
-    contact_i: Array
-    ahead_r: Array  # (2 G, P) the same one main step ahead
-    ahead_i: Array
     ahead_history: Array  # (2 G, DEPTH, G) one step ahead from g[n], g[n-1], ...
     ahead_hold: Array  # (2 G, G)
-    fine_rotation: Array  # (2, P)
-    fine_start_r: Array  # (G, P)
-    fine_start_i: Array
-    fine_end_r: Array  # (G, P)
-    fine_end_i: Array
     fine_end_contact: Array  # (2 G, G)
-    output_r: Array  # (O, P)
-    output_i: Array
     output_history: Array  # (O, DEPTH, G)
     output_direct: Array  # (O, G)
 
@@ -129,21 +123,22 @@ def deviation(
 @njit(**OPTIONS)
 def add_history(c: Coefficients, m: Memory, sign: float, zr: Array, zi: Array) -> None:
     """Add or take away the friction history: between the s form and the modes themselves."""
-    groups, modes = c.drive_r.shape
+    groups, modes = len(c.share), c.modal.shape[2]
     for d in range(DEPTH):
         for p in range(groups):
             g = sign * (m.present[p] if d == 0 else m.history[d - 1, p])
             for j in range(modes):
-                zr[j] += c.history_r[d * groups + p, j] * g
-                zi[j] += c.history_i[d * groups + p, j] * g
+                zr[j] += c.modal[c.history + d * groups + p, 0, j] * g
+                zi[j] += c.modal[c.history + d * groups + p, 1, j] * g
 
 
 @njit(**OPTIONS)
 def shift(m: Memory) -> None:
     """Make the present g the latest of the past."""
-    for d in range(PAST - 1, 0, -1):
-        m.history[d] = m.history[d - 1]
-    m.history[0] = m.present
+    for p in range(len(m.present)):
+        for d in range(PAST - 1, 0, -1):
+            m.history[d, p] = m.history[d - 1, p]
+        m.history[0, p] = m.present[p]
 
 
 @njit(**OPTIONS)
@@ -155,8 +150,8 @@ def careful_step(
     `start`, `end`: (4,) pad force, mu_mean, mean slip, k at both ends. The present g must be in `m.present`;
     afterwards it and `m.contact` are those of the new time.
     """
-    groups, modes = c.drive_r.shape
-    zr, zi = m.modes[0].copy(), m.modes[1].copy()
+    groups, modes = len(c.share), c.modal.shape[2]
+    zr, zi = m.modes[0], m.modes[1]
     g, contact = m.present, m.contact
     add_history(c, m, 1.0, zr, zi)
     shift(m)
@@ -167,25 +162,25 @@ def careful_step(
         v_mean = start[2] + part * (end[2] - start[2])
         k = start[3] + part * (end[3] - start[3])
         for j in range(modes):
-            re = c.fine_rotation[0, j] * zr[j] - c.fine_rotation[1, j] * zi[j]
-            im = c.fine_rotation[0, j] * zi[j] + c.fine_rotation[1, j] * zr[j]
+            re = c.modal[c.fine_rotation, 0, j] * zr[j] - c.modal[c.fine_rotation, 1, j] * zi[j]
+            im = c.modal[c.fine_rotation, 0, j] * zi[j] + c.modal[c.fine_rotation, 1, j] * zr[j]
             for p in range(groups):
                 first = g[p] + excitation[p]
-                re += c.fine_start_r[p, j] * first + c.fine_end_r[p, j] * excitation[p]
-                im += c.fine_start_i[p, j] * first + c.fine_end_i[p, j] * excitation[p]
+                re += c.modal[c.fine_start + p, 0, j] * first + c.modal[c.fine_end + p, 0, j] * excitation[p]
+                im += c.modal[c.fine_start + p, 1, j] * first + c.modal[c.fine_end + p, 1, j] * excitation[p]
             zr[j], zi[j] = re, im
         for row in range(2 * groups):
             contact[row] = 0.0
             for j in range(modes):
-                contact[row] += c.contact_r[row, j] * zr[j] + c.contact_i[row, j] * zi[j]
+                contact[row] += (
+                    c.modal[c.contact + row, 0, j] * zr[j] + c.modal[c.contact + row, 1, j] * zi[j]
+                )
         solve_friction(c, g, contact, n0, mu_mean, v_mean, k, inverse_saturation)
         for p in range(groups):
             for j in range(modes):
-                zr[j] += c.fine_end_r[p, j] * g[p]
-                zi[j] += c.fine_end_i[p, j] * g[p]
+                zr[j] += c.modal[c.fine_end + p, 0, j] * g[p]
+                zi[j] += c.modal[c.fine_end + p, 1, j] * g[p]
     add_history(c, m, -1.0, zr, zi)
-    m.modes[0] = zr
-    m.modes[1] = zi
 
 
 @njit(**OPTIONS)
@@ -238,11 +233,11 @@ def solve_friction(
 @njit(**OPTIONS)
 def outputs_now(c: Coefficients, m: Memory, excitation: Array, out: Array) -> None:
     """All outputs at the present time, into `out` (O,)."""
-    groups, modes = c.drive_r.shape
+    groups, modes = len(c.share), c.modal.shape[2]
     for o in range(len(out)):
         value = 0.0
         for j in range(modes):
-            value += c.output_r[o, j] * m.modes[0, j] + c.output_i[o, j] * m.modes[1, j]
+            value += c.modal[c.output + o, 0, j] * m.modes[0, j] + c.modal[c.output + o, 1, j] * m.modes[1, j]
         for q in range(groups):
             value += (
                 c.output_direct[o, q] * (m.present[q] + excitation[q])
@@ -262,20 +257,22 @@ def point(operation: Array, part: float, into: Array) -> None:
 
 @njit(**OPTIONS)
 def present_g(c: Coefficients, m: Memory, op: Array, inverse_saturation: float) -> None:
-    """Bring g into `m.present`: by the friction law, unless the last careful step left its solution there."""
+    """Bring g into `m.present`: by the friction law, unless the last careful step left its solution there.
+
+    After smooth steps the pads slide forwards; a brake at rest under a disc that stands (v = 0) is held.
+    """
     if m.flags[1] == SOLVED:
         return
+    n0, mu_mean, v_mean, k = op[0], op[1], op[2], op[3]
     for p in range(len(m.present)):
-        m.present[p] = deviation(
-            m.contact[2 * p],
-            m.contact[2 * p + 1],
-            c.share[p] * op[0],
-            op[1],
-            op[2],
-            op[3],
-            inverse_saturation,
-            c.mu_ref,
-        )
+        slip, compression, share = m.contact[2 * p], m.contact[2 * p + 1], c.share[p]
+        if m.flags[0] >= CALM:
+            variation = mu_variation(slip, k, inverse_saturation)
+            m.present[p] = forward_g(variation, mu_mean, c.mu_ref, share * n0, compression)
+        else:
+            m.present[p] = deviation(
+                slip, compression, share * n0, mu_mean, v_mean, k, inverse_saturation, c.mu_ref
+            )
     if m.flags[1] == FRESH:
         add_history(c, m, -1.0, m.modes[0], m.modes[1])
         m.flags[1] = SOLVED

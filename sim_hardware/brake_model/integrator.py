@@ -14,12 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim_hardware.brake_model import contact, kernels
+from sim_hardware.brake_model import contact
 from sim_hardware.brake_model.assembly import Array, Brake
+from sim_hardware.brake_model.blocks import STEPS, advance_blocks, block_tables, suits
+from sim_hardware.brake_model.kernels import advance_general
 from sim_hardware.brake_model.modal import (
     EXTRAPOLATION,
     MODE_BLOCK,
@@ -31,16 +32,15 @@ from sim_hardware.brake_model.modal import (
 )
 from sim_hardware.brake_model.outputs import output_rows
 
-if TYPE_CHECKING:
-    from sim_hardware.brake_model.spec import BrakeSpec
-
 #: rate of the fine steps around slip reversals
 _FINE_HZ = 320_000.0
 #: a mode that decays by more than this in one step cannot be carried in the s form
 _FASTEST_DECAY = 1e-3
 #: modes below this size are set to zero between calls, so that a brake at rest does not compute with
 #: subnormal numbers
-_NEGLIGIBLE = 1e-200
+_NEGLIGIBLE = 1e-100
+#: main steps without a reversal of slip before blocks of steps are tried again
+_PATIENCE = 64
 
 
 class SquealIntegrator:
@@ -55,6 +55,7 @@ class SquealIntegrator:
     substeps : internal steps per output interval. 1 (40 kHz) keeps squeal within 0.01 Hz and 0.01 dB of a
         tight reference (`tests/benchmarks/bench_brake_model.py`)
     outputs : names of the outputs, see `outputs`; default: acceleration of every degree of freedom
+    weights : one per output: return their weighted sum as the only output (one row instead of many)
     fine_steps : first-order-hold steps per internal step around slip reversals; default reaches 320 kHz
 
     Attributes
@@ -62,13 +63,15 @@ class SquealIntegrator:
     n_pads : number of friction groups (one per rigid pad), columns of `excitation_n`
     pads : their names
     outputs : names of the outputs, columns of the result
+    n_columns : number of columns of the result
 
     Raises
     ------
     KeyError
         unknown output
     ValueError
-        rates not positive, no complete set of modes, internal rate too low for the brake
+        rates not positive, no complete set of modes, internal rate too low for the brake, as many weights as
+        outputs not given
     """
 
     def __init__(
@@ -79,6 +82,7 @@ class SquealIntegrator:
         output_hz: float = 40_000.0,
         substeps: int = 1,
         outputs: Sequence[str] | None = None,
+        weights: Sequence[float] | None = None,
         fine_steps: int | None = None,
     ) -> None:
         if not (math.isfinite(output_hz) and output_hz > 0.0):
@@ -93,27 +97,26 @@ class SquealIntegrator:
         if fine < 1:
             raise ValueError(f"fine_steps is {fine!r}; give at least 1")
         self._system = modal_system(brake, brake.mu if mu_ref is None else mu_ref)
+        rows, direct = output_rows(brake, self._system, self.outputs)
+        if weights is not None:
+            if len(weights) != len(self.outputs):
+                raise ValueError(f"{len(weights)} weights for {len(self.outputs)} outputs; give one each")
+            rows, direct = np.array([weights]) @ rows, np.array([weights]) @ direct
+        self.n_columns = len(rows)
         self._coefficients = _coefficients(
-            brake, self._system, self.outputs, 1.0 / (output_hz * substeps), substeps, fine
+            brake, self._system, (rows, direct), 1.0 / (output_hz * substeps), substeps, fine
         )
         self.pads = tuple(group.pad for group in self._system.groups)
         self.n_pads = len(self.pads)
-        padded = self._coefficients.rotation.shape[1]
-        self._memory = contact.Memory(
-            np.zeros((2, padded)),
-            np.zeros((contact.PAST, self.n_pads)),
-            np.zeros(self.n_pads),
-            np.zeros(2 * self.n_pads),
-            np.zeros(2),
-        )
-        pair = self.n_pads == 2 and padded == MODE_BLOCK
-        self._advance = kernels.advance_pair if pair else kernels.advance_general
+        self._flat, self._memory = _memory(self.n_pads, self._coefficients.modal.shape[2])
+        self._motion = self._flat[: self._memory.modes.size + self._memory.history.size]
+        self._blocks = block_tables(self._coefficients) if suits(self._coefficients) else None
+        self._no_excitation = np.zeros((0, self.n_pads))
         self.reset()
 
     def reset(self) -> None:
         """Go to the steadily sliding state, without memory."""
-        for array in self._memory:
-            array[...] = 0.0
+        self._flat[:] = 0.0
         self._memory.flags[0] = contact.CALM  # zero is an exact history of that state
 
     def advance(
@@ -153,38 +156,53 @@ class SquealIntegrator:
         FloatingPointError
             the motion grew out of all bounds (a brake unstable in its linear part)
         """
-        operation = np.array([normal_force_n, mu, slip_m_s, k_s_m], dtype=float)
+        values = (*normal_force_n, *mu, *slip_m_s, *k_s_m)
         excitation = self._checked_excitation(n_out, excitation_n)
         inverse_saturation = 0.0
         if saturation_m_s is not None:
             if not saturation_m_s > 0.0:
                 raise ValueError(f"saturation_m_s is {saturation_m_s!r}; give a positive speed or None")
             inverse_saturation = 1.0 / saturation_m_s
-        if not np.isfinite(operation).all() or (operation[[0, 2]] < 0.0).any():
+        if not all(map(math.isfinite, values)) or min(*normal_force_n, *slip_m_s) < 0.0:
             raise ValueError(
-                f"working point (pad force, mu, slip, k) {operation.tolist()}: "
+                f"working point (pad force, mu, slip, k) {normal_force_n, mu, slip_m_s, k_s_m}: "
                 "give finite values, pad force and slip >= 0"
             )
-        out = np.zeros((n_out, len(self.outputs)))
+        out = np.empty((n_out, self.n_columns))
         if n_out:
-            self._advance(self._coefficients, self._memory, operation, inverse_saturation, excitation, out)
-            if not np.isfinite(self._memory.modes).all():
+            self._run(np.array(values).reshape(4, 2), inverse_saturation, excitation, out)
+            size = float(np.dot(self._motion, self._motion))
+            if not math.isfinite(size):
                 raise FloatingPointError(
                     f"the motion of brake '{self.brake.name}' is not finite; check its stability at "
                     f"mu = {mu}, pad force {normal_force_n} N, k = {k_s_m} s/m, or give saturation_m_s"
                 )
-            if (
-                np.abs(self._memory.modes).max() < _NEGLIGIBLE
-                and np.abs(self._memory.history).max() < _NEGLIGIBLE
-            ):
+            if size < _NEGLIGIBLE:
                 self.reset()
         return out
+
+    def _run(self, operation: Array, inverse_saturation: float, excitation: Array, out: Array) -> None:
+        """All steps: blocks where they can be taken, single steps around slip reversals and for the rest."""
+        c, flags = self._coefficients, self._memory.flags
+        step, steps = 0, len(out) * self.substeps
+        while step < steps:
+            calm = flags[0] >= contact.CALM and flags[1] == contact.FROM_LAW
+            if self._blocks is not None and calm and step + STEPS <= steps:
+                step = advance_blocks(
+                    self._blocks, self._flat, operation, inverse_saturation, c.mu_ref, c.substeps, step,
+                    excitation, out,
+                )  # fmt: skip
+            if step < steps:
+                patience = 0 if self._blocks is None else _PATIENCE
+                step = advance_general(
+                    c, self._memory, operation, inverse_saturation, step, patience, excitation, out
+                )
 
     def _checked_excitation(self, n_out: int, excitation_n: Array | None) -> Array:
         if n_out < 0:
             raise ValueError(f"n_out is {n_out!r}; give 0 or more")
         if excitation_n is None:
-            return np.zeros((0, self.n_pads))
+            return self._no_excitation
         excitation = np.ascontiguousarray(excitation_n, dtype=float)
         if excitation.shape != (n_out, self.n_pads):
             raise ValueError(f"excitation_n has the shape {excitation.shape}; give ({n_out}, {self.n_pads})")
@@ -208,7 +226,9 @@ class SquealIntegrator:
         m, c = self._memory, self._coefficients
         eta = m.modes[0] + 1j * m.modes[1]
         if m.flags[1] != contact.FRESH:
-            eta = eta + np.vstack([m.present, m.history]).ravel() @ (c.history_r + 1j * c.history_i)
+            past = np.vstack([m.present, m.history]).ravel()
+            rows = c.modal[c.history : c.history + len(past)]
+            eta = eta + past @ (rows[:, 0] + 1j * rows[:, 1])
         return (self._system.vectors @ eta[: len(self._system.eigenvalues)]).real
 
     @state.setter
@@ -217,39 +237,46 @@ class SquealIntegrator:
         state = np.asarray(value, dtype=float)
         if state.shape != (2 * self.brake.n_dof,) or not np.isfinite(state).all():
             raise ValueError(f"state of shape {state.shape}: give {2 * self.brake.n_dof} finite values")
-        for array in self._memory:
-            array[...] = 0.0
+        self._flat[:] = 0.0
         eta = self._system.inverse @ state
         self._memory.modes[0, : len(eta)], self._memory.modes[1, : len(eta)] = eta.real, eta.imag
         self._memory.contact[:] = self._system.contact_rows @ state
         self._memory.flags[1] = contact.FRESH
 
 
-def compile_kernels(spec: BrakeSpec | None = None) -> None:
-    """Compile (or load from numba's cache) the kernels, so that a process does it before anything moves.
-
-    `spec`: the brake whose kernel is needed; None: the kernel for two pads and up to 16 modes.
-    """
-    if spec is not None:
-        integrator = SquealIntegrator(Brake(spec), outputs=())
-        integrator.advance(1, normal_force_n=(1.0, 1.0), mu=(0.4, 0.4), slip_m_s=(1.0, 1.0))
-        return
-    shape, depth = MODE_BLOCK, contact.DEPTH
-    two, four, eight = np.zeros((2, shape)), np.zeros((4, shape)), np.zeros((2 * depth, shape))
-    c = contact.Coefficients(
-        1, 1, 0.4, np.ones(2), two, two, two, two, two, eight, eight, four, four, four, four,
-        np.zeros((4, depth, 2)), np.zeros((4, 2)), two, two, two, two, two, np.eye(4, 2), two, two,
-        np.zeros((2, depth, 2)), np.zeros((2, 2)),
-    )  # fmt: skip
-    m = contact.Memory(
-        np.zeros((2, shape)), np.zeros((contact.PAST, 2)), np.zeros(2), np.zeros(4), np.zeros(2)
+def compile_kernels(brake: Brake) -> None:
+    """Compile (or load from numba's cache) the kernels this brake needs, before anything moves."""
+    integrator = SquealIntegrator(brake, outputs=())
+    integrator.advance(  # a block of steps and a single one
+        STEPS + 1, normal_force_n=(1.0, 1.0), mu=(0.4, 0.4), slip_m_s=(1.0, 1.0)
     )
-    m.flags[0] = contact.CALM
-    kernels.advance_pair(c, m, np.ones((4, 2)), 0.0, np.zeros((0, 2)), np.zeros((1, 2)))
+
+
+def _memory(groups: int, modes: int) -> tuple[Array, contact.Memory]:
+    """A flat memory and its parts by name, in the order that `blocks` expects."""
+    shapes = {
+        "modes": (2, modes),
+        "history": (contact.PAST, groups),
+        "contact": (2 * groups,),
+        "present": (groups,),
+        "flags": (2,),
+    }
+    flat = np.zeros(sum(math.prod(shape) for shape in shapes.values()))
+    parts, start = {}, 0
+    for name, shape in shapes.items():
+        stop = start + math.prod(shape)
+        parts[name] = flat[start:stop].reshape(shape)
+        start = stop
+    return flat, contact.Memory(**parts)
 
 
 def _coefficients(
-    brake: Brake, system: ModalSystem, outputs: tuple[str, ...], step_s: float, substeps: int, fine_steps: int
+    brake: Brake,
+    system: ModalSystem,
+    outputs: tuple[Array, Array],
+    step_s: float,
+    substeps: int,
+    fine_steps: int,
 ) -> contact.Coefficients:
     form = multistep_form(system, step_s)
     if np.abs(form.rotation).min() < _FASTEST_DECAY:
@@ -260,21 +287,10 @@ def _coefficients(
     fine_s = step_s / fine_steps
     fine = hold_weights(system.eigenvalues, fine_s, np.array([0.0, 1.0]))[:, :, None] * system.inputs
     contacts = system.contact_rows @ system.vectors
-    state_rows, direct = output_rows(brake, system, outputs)
+    state_rows, direct = outputs
     output = state_rows @ system.vectors
     padded = max(1, -(-len(system.eigenvalues) // MODE_BLOCK)) * MODE_BLOCK
     history = form.history.transpose(0, 2, 1).reshape(-1, len(system.eigenvalues))  # (DEPTH * G, m)
-
-    def columns(values: Complex) -> tuple[Array, Array]:
-        """(rows, m) inputs to the modes, padded."""
-        wide: Complex = np.zeros((values.shape[0], padded), dtype=complex)
-        wide[:, : values.shape[1]] = values
-        return np.ascontiguousarray(wide.real), np.ascontiguousarray(wide.imag)
-
-    def rows(values: Complex) -> tuple[Array, Array]:
-        """(rows, m) products with the modes, of which the real part is wanted, padded."""
-        real, imaginary = columns(values)
-        return real, -imaginary
 
     def past(values: Complex) -> Array:
         """Effect of the history terms of the s form on products with the modes: (rows, DEPTH, G)."""
@@ -285,24 +301,35 @@ def _coefficients(
     ahead_history = EXTRAPOLATION[None, :, None] * late[:, :1, :]
     ahead_history[:, :-1, :] += late[:, 1:, :]
     ahead_history[:, 0, :] += (contacts @ form.drive).real
+    kinds: dict[str, Complex] = {  # products take the real part: conjugate rows
+        "rotation": form.rotation[None, :],
+        "drive": form.drive.T,
+        "hold": form.hold.T,
+        "history": history,
+        "contact": contacts.conj(),
+        "ahead": (contacts * form.rotation).conj(),
+        "fine_rotation": np.exp(system.eigenvalues * fine_s)[None, :],
+        "fine_start": fine[0].T,
+        "fine_end": fine[1].T,
+        "output": output.conj(),
+    }
+    rows: Complex = np.vstack(list(kinds.values()))
+    firsts, begin = {}, 0
+    for kind, part in kinds.items():
+        firsts[kind] = begin
+        begin += len(part)
+    modal = np.zeros((len(rows), 2, padded))
+    modal[:, 0, : rows.shape[1]], modal[:, 1, : rows.shape[1]] = rows.real, rows.imag
     return contact.Coefficients(
-        substeps,
-        fine_steps,
-        system.mu_ref,
-        np.array([group.load_share for group in system.groups]),
-        np.vstack(columns(form.rotation[None, :])),
-        *columns(form.drive.T),
-        *columns(form.hold.T),
-        *columns(history),
-        *rows(contacts),
-        *rows(contacts * form.rotation),
-        ahead_history,
-        np.ascontiguousarray((contacts @ form.hold).real),
-        np.vstack(columns(np.exp(system.eigenvalues * fine_s)[None, :])),
-        *columns(fine[0].T),
-        *columns(fine[1].T),
-        np.ascontiguousarray((contacts @ fine[1]).real),
-        *rows(output),
-        past(output),
-        np.ascontiguousarray(direct),
+        substeps=substeps,
+        fine_steps=fine_steps,
+        mu_ref=system.mu_ref,
+        modal=modal,
+        share=np.array([group.load_share for group in system.groups]),
+        ahead_history=ahead_history,
+        ahead_hold=np.ascontiguousarray((contacts @ form.hold).real),
+        fine_end_contact=np.ascontiguousarray((contacts @ fine[1]).real),
+        output_history=past(output),
+        output_direct=np.ascontiguousarray(direct),
+        **firsts,
     )

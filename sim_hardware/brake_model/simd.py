@@ -1,8 +1,8 @@
-"""A vector of 16 doubles as a numba value: load, store, multiply-add, horizontal sum.
+"""Short vectors of doubles as numba values: load, store, multiply-add, division, square root, selection.
 
 Numba's loops over short arrays pay for alias checks in every time step and are often not vectorised at all.
-With these intrinsics the modes of the brake stay in vector registers for the whole run; LLVM splits the 16
-lanes into what the machine has (4 x AVX2, 2 x AVX-512, 8 x NEON).
+With these intrinsics values stay in vector registers; LLVM splits the lanes into what the machine has (a
+vector of 16: 4 x AVX2, 2 x AVX-512, 8 x NEON). Products may be fused with additions, nothing is reordered.
 NOT its job: anything about brakes.
 """
 
@@ -14,60 +14,93 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic, models, register_model
 
-LANES = 16
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-_FAST = ("fast",)
+_FLAGS = ("contract", "nsz")
+_DOUBLE = ir.DoubleType()
+_INDEX = ir.IntType(32)
 
 
-class Vector16Type(types.Type):
-    """Numba type of the vector."""
+class VectorType(types.Type):
+    """Numba type of a vector of `lanes` doubles."""
 
-    def __init__(self) -> None:
-        super().__init__(name="Vector16")
-
-
-vector16 = Vector16Type()
+    def __init__(self, lanes: int) -> None:
+        self.lanes = lanes
+        super().__init__(name=f"Vector{lanes}")
 
 
-@register_model(Vector16Type)
-class _Vector16Model(models.PrimitiveModel):
+@register_model(VectorType)
+class _VectorModel(models.PrimitiveModel):
     def __init__(self, dmm: Any, fe_type: Any) -> None:
-        super().__init__(dmm, fe_type, _VECTOR)
+        super().__init__(dmm, fe_type, ir.VectorType(_DOUBLE, fe_type.lanes))
 
 
-def _pointer(context: Any, builder: Any, array_type: Any, array: Any, row: Any) -> Any:
-    """Pointer to row `row` of a C-contiguous (rows, 16) float64 array."""
+vector2, vector4, vector8, vector16 = (VectorType(lanes) for lanes in (2, 4, 8, 16))
+
+
+def _pointer(context: Any, builder: Any, array_type: Any, array: Any, first: Any, lanes: int) -> Any:
+    """Pointer to `lanes` elements of a C-contiguous float64 array from its element `first` (flat) on."""
     data = cgutils.create_struct_proxy(array_type)(context, builder, array).data
-    offset = builder.mul(row, ir.Constant(row.type, LANES))
-    return builder.bitcast(builder.gep(data, [offset]), _VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [first]), ir.VectorType(_DOUBLE, lanes).as_pointer())
+
+
+def _load(vector: VectorType) -> Any:
+    @intrinsic
+    def load(typing_context: Any, array: Any, first: Any) -> Any:
+        """Return elements of a C-contiguous float64 array from the flat index `first` on."""
+
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            index = context.cast(builder, args[1], signature.args[1], types.intp)
+            value = builder.load(_pointer(context, builder, signature.args[0], args[0], index, vector.lanes))
+            value.align = 8
+            return value
+
+        return vector(array, first), code
+
+    return load
+
+
+load2, load4, load8, load16 = (_load(vector) for vector in (vector2, vector4, vector8, vector16))
+
+
+def _zero(vector: VectorType) -> Any:
+    @intrinsic
+    def zero(typing_context: Any) -> Any:
+        """Return zeros."""
+
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            return ir.Constant(ir.VectorType(_DOUBLE, vector.lanes), None)
+
+        return vector(), code
+
+    return zero
+
+
+zero8, zero16 = _zero(vector8), _zero(vector16)
 
 
 @intrinsic
-def load(typing_context: Any, array: Any, row: Any) -> Any:
-    """Return row `row` of a C-contiguous (rows, 16) float64 array."""
+def store(typing_context: Any, array: Any, first: Any, value: Any) -> Any:
+    """Write all lanes to a C-contiguous float64 array from the flat index `first` on."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        row_index = context.cast(builder, args[1], signature.args[1], types.intp)
-        value = builder.load(_pointer(context, builder, signature.args[0], args[0], row_index))
-        value.align = 8
-        return value
-
-    return vector16(array, row), code
-
-
-@intrinsic
-def store(typing_context: Any, array: Any, row: Any, value: Any) -> Any:
-    """Write row `row` of a C-contiguous (rows, 16) float64 array."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        row_index = context.cast(builder, args[1], signature.args[1], types.intp)
+        index = context.cast(builder, args[1], signature.args[1], types.intp)
+        lanes = signature.args[2].lanes
         instruction = builder.store(
-            args[2], _pointer(context, builder, signature.args[0], args[0], row_index)
+            args[2], _pointer(context, builder, signature.args[0], args[0], index, lanes)
         )
         instruction.align = 8
         return context.get_dummy_value()
 
-    return types.void(array, row, value), code
+    return types.void(array, first, value), code
+
+
+@intrinsic
+def add(typing_context: Any, a: Any, b: Any) -> Any:
+    """Return a + b by lanes."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fadd(args[0], args[1], flags=_FLAGS)
+
+    return a(a, b), code
 
 
 @intrinsic
@@ -75,9 +108,9 @@ def multiply(typing_context: Any, a: Any, b: Any) -> Any:
     """Return a * b by lanes."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fmul(args[0], args[1], flags=_FAST)
+        return builder.fmul(args[0], args[1], flags=_FLAGS)
 
-    return vector16(a, b), code
+    return a(a, b), code
 
 
 @intrinsic
@@ -85,9 +118,9 @@ def multiply_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """Return a * b + c by lanes, rounded once where the machine can."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fadd(builder.fmul(args[0], args[1], flags=_FAST), args[2], flags=_FAST)
+        return builder.fadd(builder.fmul(args[0], args[1], flags=_FLAGS), args[2], flags=_FLAGS)
 
-    return vector16(a, b, c), code
+    return a(a, b, c), code
 
 
 @intrinsic
@@ -95,25 +128,54 @@ def negative_multiply_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """Return c - a * b by lanes."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fsub(args[2], builder.fmul(args[0], args[1], flags=_FAST), flags=_FAST)
+        return builder.fsub(args[2], builder.fmul(args[0], args[1], flags=_FLAGS), flags=_FLAGS)
 
-    return vector16(a, b, c), code
-
-
-def _splat(builder: Any, factor: Any) -> Any:
-    undefined = ir.Constant(_VECTOR, ir.Undefined)
-    one = builder.insert_element(undefined, factor, ir.Constant(ir.IntType(32), 0))
-    return builder.shuffle_vector(one, undefined, ir.Constant(ir.VectorType(ir.IntType(32), LANES), None))
+    return a(a, b, c), code
 
 
 @intrinsic
-def scale(typing_context: Any, a: Any, factor: Any) -> Any:
-    """Return a * factor by lanes, with a scalar factor."""
+def over_root(typing_context: Any, a: Any, b: Any) -> Any:
+    """Return a / sqrt(b) by lanes."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fmul(args[0], _splat(builder, args[1]), flags=_FAST)
+        kind = args[1].type
+        name = f"llvm.sqrt.v{signature.args[1].lanes}f64"
+        root = builder.module.declare_intrinsic(name, fnty=ir.FunctionType(kind, [kind]))
+        return builder.fdiv(args[0], builder.call(root, [args[1]]), flags=_FLAGS)
 
-    return vector16(a, types.float64), code
+    return a(a, b), code
+
+
+def _select(order: str) -> Any:
+    @intrinsic
+    def select(typing_context: Any, a: Any, b: Any) -> Any:
+        """Return the larger or smaller of a and b by lanes; b where they cannot be compared."""
+
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            return builder.select(builder.fcmp_ordered(order, args[0], args[1]), args[0], args[1])
+
+        return a(a, b), code
+
+    return select
+
+
+larger, smaller = _select(">"), _select("<")
+
+
+def _broadcast(builder: Any, value: Any, lanes: int) -> Any:
+    undefined = ir.Constant(ir.VectorType(_DOUBLE, lanes), ir.Undefined)
+    one = builder.insert_element(undefined, value, ir.Constant(_INDEX, 0))
+    return builder.shuffle_vector(one, undefined, ir.Constant(ir.VectorType(_INDEX, lanes), None))
+
+
+@intrinsic
+def splat2(typing_context: Any, value: Any) -> Any:
+    """Return a vector of 2 with the scalar `value` in both lanes."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _broadcast(builder, args[0], 2)
+
+    return vector2(types.float64), code
 
 
 @intrinsic
@@ -121,22 +183,40 @@ def scale_add(typing_context: Any, a: Any, factor: Any, c: Any) -> Any:
     """Return a * factor + c by lanes, with a scalar factor."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fadd(
-            builder.fmul(args[0], _splat(builder, args[1]), flags=_FAST), args[2], flags=_FAST
-        )
+        wide = _broadcast(builder, args[1], signature.args[0].lanes)
+        return builder.fadd(builder.fmul(args[0], wide, flags=_FLAGS), args[2], flags=_FLAGS)
 
-    return vector16(a, types.float64, c), code
+    return a(a, types.float64, c), code
 
 
-@intrinsic
-def total(typing_context: Any, a: Any) -> Any:
-    """Return the sum of all lanes."""
+def _part(first: int) -> Any:
+    @intrinsic
+    def part(typing_context: Any, a: Any) -> Any:
+        """Return two lanes of a vector of 4."""
 
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        function = builder.module.declare_intrinsic(
-            f"llvm.vector.reduce.fadd.v{LANES}f64",
-            fnty=ir.FunctionType(ir.DoubleType(), [ir.DoubleType(), _VECTOR]),
-        )
-        return builder.call(function, [ir.Constant(ir.DoubleType(), 0.0), args[0]], fastmath=_FAST)
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            mask = ir.Constant(ir.VectorType(_INDEX, 2), [first, first + 1])
+            return builder.shuffle_vector(args[0], ir.Constant(args[0].type, ir.Undefined), mask)
 
-    return types.float64(a), code
+        return vector2(a), code
+
+    return part
+
+
+lower_half, upper_half = _part(0), _part(2)
+
+
+def _lane(index: int) -> Any:
+    @intrinsic
+    def lane(typing_context: Any, a: Any) -> Any:
+        """Return one lane as a scalar."""
+
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            return builder.extract_element(args[0], ir.Constant(_INDEX, index))
+
+        return types.float64(a), code
+
+    return lane
+
+
+lane0, lane1 = _lane(0), _lane(1)

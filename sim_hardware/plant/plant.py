@@ -89,6 +89,7 @@ class Plant:
         scratch.step(50_000_000, run, full_rate=True)
         if sound:
             scratch.render_sound()
+            scratch._sound.compile()
 
     def step(self, dt_ns: int, commands: Commands, *, full_rate: bool) -> PlantStep:
         """Advance the rig.

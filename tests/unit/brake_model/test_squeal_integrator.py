@@ -32,8 +32,7 @@ def noise(n: int, seed: int = 1) -> np.ndarray:
 
 
 def test_compile_before_motion() -> None:
-    compile_kernels()
-    compile_kernels(PLANT.spec)
+    compile_kernels(PLANT)
 
 
 def test_rest_stays_at_rest() -> None:
@@ -48,13 +47,42 @@ def test_same_input_gives_the_same_bits_and_calls_can_be_split() -> None:
     whole, split, again = (SquealIntegrator(PLANT, outputs=OUTPUTS) for _ in range(3))
     expected = whole.advance(600, **STEADY, excitation_n=push)
     np.testing.assert_array_equal(again.advance(600, **STEADY, excitation_n=push), expected)
+    parts = [split.advance(n, **STEADY, excitation_n=push[s : s + n]) for s, n in ((0, 200), (200, 400))]
+    np.testing.assert_array_equal(np.concatenate(parts), expected)  # whole blocks of 8 steps: the same bits
+    split.reset()
     parts = [
-        split.advance(n, **STEADY, excitation_n=push[s : s + n]) for s, n in ((0, 1), (1, 199), (200, 400))
+        split.advance(n, **STEADY, excitation_n=push[s : s + n]) for s, n in ((0, 1), (1, 196), (197, 403))
     ]
-    np.testing.assert_array_equal(np.concatenate(parts), expected)
+    np.testing.assert_allclose(
+        np.concatenate(parts), expected, rtol=0.0, atol=1e-10 * np.abs(expected).max(axis=0).min()
+    )
     assert expected[1:].any(axis=0).all()
     different = SquealIntegrator(PLANT, outputs=OUTPUTS).advance(600, **STEADY, excitation_n=noise(600, 2))
     assert (different != expected).any()
+
+
+def test_weighted_sum_is_the_sum_of_the_outputs() -> None:
+    push, weights = noise(300), [0.5, 20.0, -1e-3]
+    single, summed = (
+        SquealIntegrator(PLANT, outputs=OUTPUTS),
+        SquealIntegrator(PLANT, outputs=OUTPUTS, weights=weights),
+    )
+    expected = single.advance(300, **POINT, excitation_n=push) @ np.array(weights)
+    result = summed.advance(300, **POINT, excitation_n=push)
+    assert result.shape == (300, 1)
+    np.testing.assert_allclose(result[:, 0], expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+    with pytest.raises(ValueError, match="weights"):
+        SquealIntegrator(PLANT, outputs=OUTPUTS, weights=[1.0])
+
+
+def test_excitation_ends_with_the_call() -> None:
+    """A call without excitation after one with it: the same as excitation of zero."""
+    pushed, zero = SquealIntegrator(PLANT, outputs=OUTPUTS), SquealIntegrator(PLANT, outputs=OUTPUTS)
+    for integrator in (pushed, zero):
+        integrator.advance(80, **STEADY, excitation_n=noise(80))
+    np.testing.assert_array_equal(
+        pushed.advance(80, **STEADY), zero.advance(80, **STEADY, excitation_n=np.zeros((80, 2)))
+    )
 
 
 def test_memory_continues_bit_for_bit_and_reset_forgets() -> None:

@@ -9,7 +9,6 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from sim_hardware.brake_model import kernels
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.friction import LinearFriction, SaturatingFriction
 from sim_hardware.brake_model.integrator import SquealIntegrator
@@ -187,13 +186,14 @@ def test_roughness_excitation_is_exact() -> None:
     np.testing.assert_allclose(actual, expected, rtol=1e-7, atol=1e-7 * np.abs(expected).max(axis=0).min())
 
 
+@pytest.mark.parametrize("substeps", [1, 2])
 @pytest.mark.parametrize("slip", [SLIP, 0.02])
-def test_vector_kernel_equals_general_kernel(slip: float) -> None:
+def test_blocks_of_steps_equal_single_steps(slip: float, substeps: int) -> None:
     """Two compiled versions of the same recursion; at 0.02 m/s with reversals of slip."""
     names = ["disc.y", "inner_pad:friction", "outer_pad:normal", "piston_l:force_y"]
-    fast, plain = (SquealIntegrator(PLANT, outputs=names) for _ in range(2))
-    assert fast._advance is kernels.advance_pair
-    plain._advance = kernels.advance_general
+    fast, plain = (SquealIntegrator(PLANT, outputs=names, substeps=substeps) for _ in range(2))
+    assert fast._blocks is not None
+    plain._blocks = None
     push = np.random.default_rng(2).normal(size=(800, 2))
     results = []
     for integrator in (fast, plain):
@@ -292,7 +292,7 @@ def test_stick_slip_of_the_belt_oscillator() -> None:
     times = np.arange(2000) / RATE
     expected = stick_slip_reference(brake, n, mu, k, v0, times)
     integrator = SquealIntegrator(brake, outputs=["mass.x:displacement", "mass.x:velocity"])
-    assert integrator._advance is kernels.advance_general
+    assert integrator._blocks is None
     integrator.state = np.array([expected[0], v0 * (1 - 1e-9)])
     actual = integrator.advance(
         2000, normal_force_n=(n, n), mu=(mu, mu), slip_m_s=(v0, v0), k_s_m=(k, k), saturation_m_s=None
