@@ -122,7 +122,7 @@ class Stage:
             key = (braking, phase)
             there = progress.braking == braking and phase in progress.phase
             if phase == "braking":
-                there = there and self.recorder.index == braking and self.recorder.blocks == 5
+                there = there and self.recorder.index == braking and self.recorder.blocks == 4
             if there and key not in self.said:
                 self.said[key] = True
                 return verb
@@ -244,7 +244,7 @@ def test_trip_takes_the_rig_to_rest_and_marks_the_braking(stage: Stage):
     def begin(specification: Any, *, t0_s: float) -> None:
         real(specification, t0_s=t0_s)
         if specification["index"] == 2:
-            stage.guard.trip_at = stage.guard.beats[-1] + 6
+            stage.guard.trip_at = stage.guard.beats[-1] + 4
             stage.session.status["relay"] = True
 
     stage.recorder.begin = begin  # type: ignore[method-assign]
