@@ -124,9 +124,7 @@ class RigServer:
                 self._controller = self._read(self._controller, self._on_controller)
             elif self._safety is not None and fd == self._safety.fileno():
                 self._safety = self._read(self._safety, self._on_safety)
-                if self._safety is None:
-                    self._answered = True
-                    self._open_relay("the watchdog has gone")
+                self._check_safety()
 
     def _read(self, link: Link, handle: Any) -> Link | None:
         try:
@@ -139,6 +137,12 @@ class RigServer:
             self._poll.unregister(link)
             link.close()
             return None
+
+    def _check_safety(self) -> None:
+        """A watchdog that has gone answers no more, and nobody renews the relay."""
+        if self._safety is None:
+            self._answered = True
+            self._open_relay("the watchdog has gone")
 
     # -- parties --------------------------------------------------------------------------------
 
@@ -202,6 +206,7 @@ class RigServer:
         self._answered = self._safety is None
         if self._safety is not None:
             self._safety = self._send(self._safety, sample)
+            self._check_safety()
         if self._controller is not None and step is not None:
             if not self._real_time:
                 self._step = None
