@@ -155,6 +155,9 @@ def main() -> None:
     except RigctlError as error:
         print(f"rigctl: {error}", file=sys.stderr)
         sys.exit(exit_codes.of(error))
+    except KeyboardInterrupt:
+        print("rigctl: interrupted; no rig is being driven.", file=sys.stderr)
+        sys.exit(exit_codes.STOPPED)
 
 
 if __name__ == "__main__":

@@ -157,6 +157,7 @@ class Engine:
             self._owed_k = block.k
             self._guard.passed(Checkpoint.BLOCK_RECEIVED)
             self._guard.update(block.k)
+            self._require_relay()
             running = self._turn(script, block)
             self._guard.passed(Checkpoint.ENGINE_STEPPED | Checkpoint.SETPOINTS_MADE)
             self._listen_to_recorder()
@@ -166,6 +167,15 @@ class Engine:
             self._tell(block)
             if not running:
                 return
+
+    def _require_relay(self) -> None:
+        """The relay has opened without a word of the watchdog: it is frozen, or somebody pressed a button."""
+        if self._armed and not self._rig.safety.status().relay_closed:
+            raise SafetyTrip(
+                "the safety relay has opened.",
+                place="safety chain",
+                remedy="Look at emergency stop, doors and logs/watchdog.log.",
+            )
 
     def _catch_up(self) -> None:
         """After a fault in the middle of a block: the loop goes on, and owes the watchdog that heartbeat."""
@@ -262,6 +272,7 @@ class Engine:
             self._journal.write("stopping", rig_s=self._rig_s, reason=stop.reason)
         self._enter(State.STOPPING, "stop" if self._stop else "the program is done")
         yield from self._procedures.run_down()
+        self._armed = False
         self._guard.disarm()
         yield
 
@@ -395,6 +406,7 @@ class Engine:
     def _last_script(self) -> Script:
         yield from self._procedures.run_down()
         if self._armed:
+            self._armed = False
             self._guard.disarm()
         yield
 

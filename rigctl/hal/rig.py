@@ -109,7 +109,9 @@ class Rig:
         )
 
     def request(self, *, dt_s: float, recording: bool) -> None:
-        """Length and kind of the blocks from the next one on."""
+        """Length and kind of the blocks from the next one on; in real time none is longer than `block_s`."""
+        if self.context.time == "real":
+            dt_s = min(dt_s, self.config.block_s)
         self._request = Request(round(dt_s * NS_PER_S), recording)
 
     def blocks(self) -> Iterator[Block]:

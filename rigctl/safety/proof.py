@@ -23,17 +23,20 @@ _GOOD_BLOCKS: Final = 2
 Maker = Callable[[SafetySample, Limits], SafetySample]
 
 
-def good_sample(k: int) -> SafetySample:
-    """A braking at 20 bar and 40 1/min, with the unrest of living sensors."""
+def good_sample(k: int, limits: Limits) -> SafetySample:
+    """A braking well within the limits, whatever they are, with the unrest of living sensors."""
+    heat = limits.disc_temperature
+    bar, rpm = 0.45 * limits.pressure.max_bar, min(40.0, 0.5 * limits.speed.max_rpm)
+    nm, degc = 0.3 * limits.torque.max_nm, 0.5 * (heat.min_degc + heat.approach_from_degc)
     unrest = [((k * READINGS + i) * 37 % 101) / 1000.0 for i in range(READINGS)]
     return SafetySample(
         k=k,
         t_s=(k + 1) * BLOCK_S,
         dt_s=BLOCK_S,
-        pressure_bar=tuple(20.0 + u for u in unrest),
-        speed_rpm=tuple(40.0 + u for u in unrest),
-        torque_nm=tuple(380.0 + u for u in unrest),
-        temperature_degc=tuple(150.0 + u for u in unrest),
+        pressure_bar=tuple(bar + u for u in unrest),
+        speed_rpm=tuple(rpm + u for u in unrest),
+        torque_nm=tuple(nm + u for u in unrest),
+        temperature_degc=tuple(degc + u for u in unrest),
         relay_closed=True,
         drive_enabled=True,
         estop_ok=True,
@@ -103,7 +106,7 @@ def provoke(check_id: str, limits: Limits, *, relay_wanted: bool = True, blocks:
     before: View | None = None
     for k in range(_GOOD_BLOCKS + blocks):
         faulty = k >= _GOOD_BLOCKS
-        sample = good_sample(k)
+        sample = good_sample(k, limits)
         view = View(make(sample, limits) if faulty else sample, before, relay_wanted or not faulty)
         verdicts = runner.run(view, before)
         if any(verdict.check.id == check_id for verdict in verdicts):
@@ -118,7 +121,7 @@ def failed_checks(limits: Limits) -> list[str]:
     runner = CheckRunner(limits)
     before: View | None = None
     for k in range(2 * READINGS):
-        view = View(good_sample(k), before, True)
+        view = View(good_sample(k, limits), before, True)
         failed += [f"{verdict.check.id} (false alarm)" for verdict in runner.run(view, before)]
         before = view
     return failed

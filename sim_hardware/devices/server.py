@@ -61,6 +61,7 @@ class RigServer:
         self._step: dict[str, Any] | None = None
         self._step_at = 0.0
         self._answered = True
+        self._watchdog_silent = False
         self._edge_at = time.monotonic()
         self._blocks_at_rest = REST_BLOCKS
         self._poll = select.poll()
@@ -90,7 +91,8 @@ class RigServer:
         """Wait for the controller's step and the watchdog's answer. True when the plant may go on."""
         if self._step is not None and self._answered:
             return True
-        if self._relay and time.monotonic() - self._edge_at > self._relay_timeout_s:
+        if time.monotonic() - self._edge_at > self._relay_timeout_s and not self._answered:
+            self._watchdog_silent = self._answered = True
             self._open_relay("no edge of the watchdog in time")
         if not self._relay and self._answered and self._step is None and not self._at_rest():
             # The controller is silent or gone and the relay is open: the shaft runs down by itself.
@@ -114,7 +116,7 @@ class RigServer:
             if self._relay and time.monotonic() - self._edge_at > self._relay_timeout_s:
                 self._open_relay("no edge of the watchdog in time")
         if self._step is not None and time.monotonic() - self._step_at > LEASE_S:
-            self._step = None  # set-points are leases
+            self._step = None  # set-points are leases; nothing is recorded for a controller that is silent
         return due
 
     def _pump(self, timeout_s: float) -> None:
@@ -152,12 +154,13 @@ class RigServer:
             self._step_at = time.monotonic()
 
     def _on_safety(self, message: dict[str, Any]) -> None:
+        self._watchdog_silent = False
         kind = message.get("m")
         if kind == "open":
             self._open_relay(str(message.get("reason", "")))
         elif kind == "close":
             self._relay = True
-        if kind in ("edge", "close"):
+        if kind != "open":
             self._edge_at = time.monotonic()
         if message.get("k") == self._k - 1:
             self._answered = True
@@ -203,11 +206,11 @@ class RigServer:
         sample = {"m": "sample", "k": self._k, "t": end_s, "dt": dt_ns * 1e-9, **result.safety, **status}
         self._k += 1
         self._t_ns += dt_ns
-        self._answered = self._safety is None
+        self._answered = self._safety is None or self._watchdog_silent
         if self._safety is not None:
             self._safety = self._send(self._safety, sample)
             self._check_safety()
-        if self._controller is not None and step is not None:
+        if self._controller is not None and (step is not None or self._real_time):
             if not self._real_time:
                 self._step = None
             self._controller = self._send(self._controller, message)

@@ -60,9 +60,16 @@ def test_the_proof_test_passes_and_notices_a_check_that_is_blind() -> None:
     # A limit so high that the made-up overspeed of another check cannot be told: blind the pressure check.
     blind = replace(LIMITS, pressure=replace(LIMITS.pressure, readings=10**6))
     assert failed_checks(blind) == ["pressure_range"]
-    nervous = replace(LIMITS, torque=replace(LIMITS.torque, max_nm=10.0, readings=1))
-    assert "torque_range (false alarm)" in failed_checks(nervous)
-    assert not provoke("torque_range", nervous)  # it complains before the fault is there
+    # Power so limited that a braking well within the other limits is too much: it complains before the fault.
+    nervous = replace(LIMITS, power=replace(LIMITS.power, peak_kw=0.1, peak_readings=1))
+    assert "power_peak (false alarm)" in failed_checks(nervous)
+    assert not provoke("power_peak", nervous)
+
+
+@pytest.mark.parametrize("max_degc", [60.0, 90.0, 120.0, 700.0])
+def test_the_proof_test_fits_any_temperature_limit(max_degc: float) -> None:
+    heat = replace(LIMITS.disc_temperature, max_degc=max_degc, approach_from_degc=0.6 * max_degc)
+    assert failed_checks(replace(LIMITS, disc_temperature=heat)) == []
 
 
 @pytest.mark.parametrize(
@@ -276,7 +283,8 @@ def test_signal_statistics_agree_with_the_definition(values: list[float | None])
 
 
 def test_good_samples_of_the_proof_follow_each_other() -> None:
-    assert good_sample(4).t_s - good_sample(3).t_s == pytest.approx(good_sample(4).dt_s)
+    third, fourth = good_sample(3, LIMITS), good_sample(4, LIMITS)
+    assert fourth.t_s - third.t_s == pytest.approx(fourth.dt_s)
 
 
 def test_a_full_counter_empties_with_the_good_readings_of_the_next_block() -> None:
