@@ -19,7 +19,7 @@ run: $(VENV)/.run
 	$(BIN)/rigctl run $(PROGRAM) $(RUN_ARGS)
 
 test: lint types
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .

@@ -83,8 +83,9 @@ class Cli:
 
     def start_run(self, program: Path, name: str, *arguments: object) -> subprocess.Popen[str]:
         return self.start(
-            "run", program, "--rig", self.rig, "--out", self.folder, "--name", name, "--seed", 1, *arguments
-        )
+            "run", program, "--rig", self.rig, "--out", self.folder, "--name", name, "--seed", 1,
+            "--no-report", *arguments,
+        )  # fmt: skip
 
     def records(self, name: str) -> list[Record]:
         path = self.folder / name / "journal.jsonl"

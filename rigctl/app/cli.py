@@ -57,6 +57,7 @@ def run(
     time: Annotated[
         Time, typer.Option("--time", help="virtual: as fast as possible; real: by the clock.")
     ] = Time.VIRTUAL,
+    report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
 ) -> None:
     """Run a program: condition, brake, record, find squeal, report.
 
@@ -66,7 +67,7 @@ def run(
     from rigctl.app.running import RunOptions
     from rigctl.app.running import run as run_program
 
-    raise typer.Exit(run_program(RunOptions(program, rig, out, name, seed, time.value), _console()))
+    raise typer.Exit(run_program(RunOptions(program, rig, out, name, seed, time.value, report), _console()))
 
 
 @app.command()
@@ -80,11 +81,12 @@ def resume(
             help="After a safety trip: what was found and done, in your words.",
         ),
     ] = "",
+    report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
 ) -> None:
     """Recover what a broken run has left and go on with the first braking that is not complete."""
     from rigctl.app.running import resume as resume_campaign
 
-    raise typer.Exit(resume_campaign(campaign, acknowledge, _console()))
+    raise typer.Exit(resume_campaign(campaign, acknowledge, report, _console()))
 
 
 @app.command()
@@ -98,8 +100,8 @@ def check(
     raise typer.Exit(show_check(program, rig, _console()))
 
 
-@app.command()
-def report(
+@app.command("report")
+def build_report(
     campaign: Annotated[Path, typer.Argument(help="Campaign folder.")],
 ) -> None:
     """Build the report of a campaign again."""

@@ -56,6 +56,7 @@ class RunOptions:
     name: str | None
     seed: int | None
     time: str
+    report: bool = True
 
 
 def run(options: RunOptions, console: Console) -> int:
@@ -108,10 +109,12 @@ def run(options: RunOptions, console: Console) -> int:
             highlight=False,
         )
         console.print(f"Campaign {campaign.folder}", highlight=False)
-        return _carry_out(campaign, file, attempt=0, done=[], acknowledgement="", console=console)
+        return _carry_out(
+            campaign, file, attempt=0, done=[], acknowledgement="", report=options.report, console=console
+        )
 
 
-def resume(folder: Path, acknowledgement: str, console: Console) -> int:
+def resume(folder: Path, acknowledgement: str, report: bool, console: Console) -> int:
     """Recover what a broken run has left, then go on with the first braking that is not complete.
 
     Raises
@@ -129,7 +132,8 @@ def resume(folder: Path, acknowledgement: str, console: Console) -> int:
         left = file.program.count - len(done)
         if left == 0:
             console.print(f"All {file.program.count} brakings are complete already.", highlight=False)
-            make_report(folder, console)
+            if report:
+                make_report(folder, console)
             return exit_codes.OK
         console.print(f"{len(done)} brakings are complete, {left} are left.", highlight=False)
         attempt = sum(1 for record in read_journal(campaign.journal_path) if record.kind == "run_started")
@@ -140,6 +144,7 @@ def resume(folder: Path, acknowledgement: str, console: Console) -> int:
             attempt=attempt,
             done=sorted(done),
             acknowledgement=acknowledgement,
+            report=report,
             console=console,
         )
 
@@ -177,9 +182,12 @@ def _carry_out(
     attempt: int,
     done: list[int],
     acknowledgement: str,
+    report: bool,
     console: Console,
 ) -> int:
-    threading.Thread(target=_warm_up_figures, daemon=True).start()
+    warm_up = threading.Thread(target=_warm_up_figures, daemon=True)
+    if report:
+        warm_up.start()
     started = time.monotonic()
     with ProgressView(console, file.program, file.rig.capabilities) as view:
         supervisor = Supervisor(
@@ -196,7 +204,9 @@ def _carry_out(
     if any(campaign.spools.iterdir()):
         _recover(campaign, console)
     _tell(result, wall_s, console)
-    make_report(campaign.folder, console, wall_s=wall_s, rig_s=result.rig_s)
+    if report:
+        warm_up.join()  # the report is drawn by two processes, which wants a process without threads
+        make_report(campaign.folder, console, wall_s=wall_s, rig_s=result.rig_s)
     return _end(result, campaign.folder, console)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import zlib
 from collections import deque
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from rigctl.safety.causes import Cause
 from rigctl.safety.limits import SetpointLimits
@@ -36,12 +36,12 @@ def _is_finite(value: object) -> bool:
 
 def setpoint_fault(setpoints: object, limits: SetpointLimits) -> Cause | None:
     """K-24: what the controller commands must be known, finite and within limits. Zero always passes."""
-    if not isinstance(setpoints, dict) or setpoints.keys() != SETPOINTS:  # pyright: ignore[reportUnknownMemberType]
+    points = cast("dict[str, Any]", setpoints) if isinstance(setpoints, dict) else {}
+    if points.keys() != SETPOINTS:
         return Cause("setpoint", detail="a heartbeat names p, n and enable, and nothing else")
-    pressure: Any = setpoints["p"]
-    speed: Any = setpoints["n"]
-    if not isinstance(setpoints["enable"], bool):
-        return Cause("setpoint", detail=f"enable is {setpoints['enable']!r}, not true or false")
+    pressure, speed, enable = points["p"], points["n"], points["enable"]
+    if not isinstance(enable, bool):
+        return Cause("setpoint", detail=f"enable is {enable!r}, not true or false")
     if not (_is_finite(pressure) and 0.0 <= pressure <= limits.max_pressure_bar):
         return Cause("setpoint", f"pressure {pressure!r} bar", f"{limits.max_pressure_bar:g} bar")
     if not (_is_finite(speed) and 0.0 <= speed <= limits.max_speed_rpm):

@@ -267,7 +267,7 @@ def load_limits(path: Path) -> LoadedLimits:
 def parse_limits(raw: Mapping[str, Any], file: str) -> Limits:
     """Build limits from a mapping; see `load_limits`."""
     _known(raw, _TOP_KEYS, file, "")
-    if raw["schema"] != SCHEMA or isinstance(raw["schema"], bool):
+    if type(raw["schema"]) is not int or raw["schema"] != SCHEMA:
         raise _fault(file, "schema", raw["schema"], "is not known", f"This program reads schema {SCHEMA}.")
     name = raw["name"]
     if not (isinstance(name, str) and 0 < len(name) <= 64 and name.isprintable()):
@@ -334,7 +334,7 @@ def _stop_categories(raw: Any, file: str) -> Mapping[str, int]:
     table = _table(raw, file, "stop_category")
     _known(table, tuple(CAUSES), file, "stop_category.")
     for key, value in table.items():
-        if value != 0 or isinstance(value, bool) or not isinstance(value, int):
+        if type(value) is not int or value != 0:
             raise _fault(
                 file, f"stop_category.{key}", value, "is not supported",
                 "Use 0 (torque off and pressure vented at once); a supervised ramp is not available.",

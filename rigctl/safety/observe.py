@@ -7,7 +7,7 @@ view of the block before, so a check can be replayed on recorded samples. Not it
 from __future__ import annotations
 
 from math import isfinite, nan, pi
-from typing import Final
+from typing import Final, cast
 
 from rigctl.core.safety_link import SafetySample
 
@@ -37,14 +37,14 @@ class Signal:
     def __init__(self, values: tuple[float | None, ...], before: Signal | None) -> None:
         count = len(values)
         try:
-            total = sum(values)  # pyright: ignore[reportCallIssue, reportArgumentType, reportUnknownVariableType]
+            total: float = sum(cast("tuple[float, ...]", values))  # TypeError where one is None
             clean = count > 0 and total - total == 0.0
         except TypeError:
             total, clean = 0.0, False
         if clean:
-            low: float = min(values)  # type: ignore[type-var]
-            high: float = max(values)  # type: ignore[type-var]
-            self.values: tuple[float, ...] = values  # type: ignore[assignment]
+            self.values: tuple[float, ...] = cast("tuple[float, ...]", values)
+            low: float = min(self.values)
+            high: float = max(self.values)
             self.invalid = 0
             self.mean: float = total / count
         else:
@@ -56,8 +56,8 @@ class Signal:
             )
         self.count = count
         self.last = self.values[-1] if count else nan
-        self.low = low
-        self.high = high
+        self.low: float = low
+        self.high: float = high
         # A block of different numbers has run 0, so only its last number matters to the next one.
         self.run = 0
         if low == high:

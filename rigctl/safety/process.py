@@ -204,9 +204,7 @@ class Watchdog:
             if self._read_controller(0.0, now_s):
                 continue
             left_s = deadline_s - time.monotonic()
-            if self._controller is None or left_s <= 0.0:
-                return
-            if not self._read_controller(left_s, now_s):
+            if left_s <= 0.0 or not self._read_controller(left_s, now_s):
                 return
 
     def _send_status(self, k: int) -> None:

@@ -16,7 +16,7 @@ from rigctl.core.blocks import Block
 from rigctl.core.channels import ChannelSpec
 from rigctl.core.errors import ConfigError, DeviceError
 from rigctl.hal.devices import Request, RigContext, SafetyStatus
-from sim_hardware.devices.session import SimulatedSession
+from sim_hardware.devices.session import DEFAULT_RELAY_TIMEOUT_S, SimulatedSession
 
 
 class _Simulated:
@@ -149,9 +149,23 @@ class SimulatedAcquisition(_Simulated):
 
 
 class SimulatedSafetyChannel(_Simulated):
-    """Read-back of the simulated safety relay."""
+    """Read-back of the simulated safety relay. Setting: ``relay_timeout_s``, how long the relay stays closed
+    without an edge in real time."""
 
     role = "safety"
+    known_settings = ("relay_timeout_s",)
+
+    def __init__(self, settings: Mapping[str, Any], context: RigContext) -> None:
+        super().__init__(settings, context)
+        timeout_s = settings.get("relay_timeout_s", DEFAULT_RELAY_TIMEOUT_S)
+        if not isinstance(timeout_s, int | float) or not 0.05 <= timeout_s <= 5.0:
+            raise ConfigError(
+                f"{timeout_s!r} is no time for the relay.",
+                place=f"{context.place}: devices.safety.relay_timeout_s",
+                value=timeout_s,
+                remedy="Give seconds between 0.05 and 5.",
+            )
+        self._session.relay_timeout_s = float(timeout_s)
 
     def status(self) -> SafetyStatus:
         """See `SafetyChannel.status`."""

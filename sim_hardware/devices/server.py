@@ -22,7 +22,6 @@ from sim_hardware.devices.options import add_plant_arguments
 from sim_hardware.devices.session import RING_NAME, SOCKET_NAME
 
 VIRTUAL_RELAY_TIMEOUT_S = 10.0  # wall clock: the watchdog process itself is late only when it is dead
-REAL_RELAY_TIMEOUT_S = 0.15
 LEASE_S = 0.25  # real time: set-points older than this are dropped
 FREE_RUN_BLOCK_NS = 50_000_000
 RING_S = 32.0
@@ -42,16 +41,20 @@ class RigServer:
         Renders the sound.
     real_time : bool
         Pace blocks by the wall clock and do not wait for anybody.
+    relay_timeout_s : float
+        Real time: the relay opens when no edge has come for so long.
     """
 
-    def __init__(self, plant: Any, ring: Any, microphone: Any, *, real_time: bool) -> None:
+    def __init__(
+        self, plant: Any, ring: Any, microphone: Any, *, real_time: bool, relay_timeout_s: float
+    ) -> None:
         from sim_hardware.plant import Commands
 
         self._plant = plant
         self._ring = ring
         self._microphone = microphone
         self._real_time = real_time
-        self._relay_timeout_s = REAL_RELAY_TIMEOUT_S if real_time else VIRTUAL_RELAY_TIMEOUT_S
+        self._relay_timeout_s = relay_timeout_s if real_time else VIRTUAL_RELAY_TIMEOUT_S
         self._commands_type = Commands
         self._controller: Link | None = None
         self._safety: Link | None = None
@@ -271,6 +274,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="rig server", description=__doc__)
     add_plant_arguments(parser)
     parser.add_argument("--time", choices=("virtual", "real"), required=True)
+    parser.add_argument("--relay-timeout", type=float, required=True)
     options = parser.parse_args()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     listener = Listener(options.run_dir / SOCKET_NAME)  # before the slow imports: the others can connect
@@ -290,7 +294,9 @@ def main() -> None:
     try:
         plant.compile(sound=False)
         microphone.wait_until_ready()
-        server = RigServer(plant, ring, microphone, real_time=real_time)
+        server = RigServer(
+            plant, ring, microphone, real_time=real_time, relay_timeout_s=options.relay_timeout
+        )
         parties = accept_parties(listener)
         parties["controller"].send({"m": "hello", "channels": [s.to_mapping() for s in plant.channels]})
         server.connect(parties["controller"], parties["safety"])

@@ -24,6 +24,7 @@ SOCKET_NAME = "rig.sock"
 RING_NAME = "ring"
 START_TIMEOUT_S = 180.0  # the first start on a machine compiles the kernels
 BLOCK_TIMEOUT_S = 20.0
+DEFAULT_RELAY_TIMEOUT_S = 0.15
 
 
 @dataclass
@@ -50,6 +51,7 @@ class SimulatedSession:
         self._context = context
         self.setpoints = Setpoints()
         self.arguments: list[str] = []
+        self.relay_timeout_s = DEFAULT_RELAY_TIMEOUT_S
         self.status: Mapping[str, Any] = {}
         self.channels: tuple[ChannelSpec, ...] = ()
         self._link: Link | None = None
@@ -74,7 +76,8 @@ class SimulatedSession:
             return
         command = [
             sys.executable, "-m", "sim_hardware.devices.server",
-            "--run-dir", str(self._context.run_dir), "--time", self._context.time, *self.arguments,
+            "--run-dir", str(self._context.run_dir), "--time", self._context.time,
+            "--relay-timeout", str(self.relay_timeout_s), *self.arguments,
         ]  # fmt: skip
         log_dir = self._context.log_dir
         log = (log_dir / "rig.log").open("ab") if log_dir else None

@@ -61,7 +61,7 @@ def test_killed_process(cli, process: str):
         assert trip.payload["cause"] == "controller_gone"
         assert run.returncode == 4
     # what the spool held is a file now, and resume goes on with the first braking that is not complete
-    code, text = cli.run("resume", cli.folder / "a")
+    code, text = cli.run("resume", cli.folder / "a", "--no-report")
     assert code == 0, text + cli.logs("a")
     assert {i for i, status in committed(cli, "a").items() if status == "complete"} == {1, 2, 3}
     assert_all_readable(cli, "a")
@@ -115,7 +115,7 @@ def test_over_temperature_ends_in_the_safe_state(cli):
     assert ("watchdog", "safe_state_reached") in kinds
     assert ("controller", "at_rest_after_trip") in kinds
     # the trip wants a person's word
-    code, text = cli.run("resume", cli.folder / "a")
+    code, text = cli.run("resume", cli.folder / "a", "--no-report")
     assert code == 4
     assert "--acknowledge" in text
 
@@ -131,7 +131,7 @@ def test_ctrl_c_stops_safely_and_says_how_to_go_on(cli):
     assert f"rigctl resume {cli.folder / 'a'}" in text
     assert any(r.kind == "disarmed" for r in cli.records("a"))
     assert committed(cli, "a").get(1) in (None, "incomplete")
-    code, text = cli.run("resume", cli.folder / "a")
+    code, text = cli.run("resume", cli.folder / "a", "--no-report")
     assert code == 0, text + cli.logs("a")
     assert {i for i, status in committed(cli, "a").items() if status == "complete"} == {1, 2}
 
@@ -164,7 +164,7 @@ def test_second_run_in_the_same_campaign_is_refused(cli):
     program = cli.program(pressures=[2], temperatures=[30], duration_s=3000.0)
     run = cli.start_run(program, "a")
     wait_for_braking(cli, "a", 1)
-    code, text = cli.run("resume", cli.folder / "a")
+    code, text = cli.run("resume", cli.folder / "a", "--no-report")
     assert code == 1
     assert "another process" in text
     code, text = cli.run("run", program, "--rig", cli.rig, "--out", cli.folder, "--name", "a")

@@ -30,6 +30,7 @@ class PlantSession:
         self.status: dict[str, Any] = {"relay": True, "estop": True, "doors": True}
         self.channels: Sequence[ChannelSpec] = self.plant.channels
         self.arguments: list[str] = []
+        self.relay_timeout_s = 0.0
         self.blocks: list[Block] = []
         self._k = self._t_ns = 0
 
