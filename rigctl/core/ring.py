@@ -9,6 +9,9 @@ Layout: 8 bytes magic, 8 bytes header length, JSON header, then per channel one 
 written count (uint64) and the ring itself.
 """
 
+# numpy's stubs are partly unknown in some of its versions:
+# pyright: reportUnknownMemberType=false
+
 from __future__ import annotations
 
 import json
