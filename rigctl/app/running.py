@@ -38,6 +38,7 @@ from rigctl.hal.devices import RigContext
 from rigctl.recording.campaign import Campaign, create_campaign, open_campaign, require_free_space
 from rigctl.recording.recovery import recover
 from rigctl.safety.limits import load_limits
+from sequences.program import Program
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 DISK_RESERVE_BYTES = 500e6
@@ -104,7 +105,8 @@ def run(options: RunOptions, console: Console) -> int:
             (campaign.folder / target).parent.mkdir(exist_ok=True)
             shutil.copyfile(source, campaign.folder / target)
         console.print(
-            f"{program.count} brakings on {rig.name}, about {duration_text(result.estimated_duration_s)} "
+            f"{program.count} brakings ({_parts(program)}) on {rig.name}, "
+            f"about {duration_text(result.estimated_duration_s)} "
             f"of rig time; seed {file.seed}",
             highlight=False,
         )
@@ -203,7 +205,7 @@ def _carry_out(
     wall_s = time.monotonic() - started
     if any(campaign.spools.iterdir()):
         _recover(campaign, console)
-    _tell(result, wall_s, console)
+    _tell(result, file.program, wall_s, console)
     if report:
         warm_up.join()  # the report is drawn by two processes, which wants a process without threads
         make_report(campaign.folder, console, wall_s=wall_s, rig_s=result.rig_s)
@@ -215,10 +217,16 @@ def _warm_up_figures() -> None:
     import matplotlib.figure  # noqa: F401
 
 
-def _tell(result: RunResult, wall_s: float, console: Console) -> None:
+def _parts(program: Program) -> str:
+    """Brakings by sequence: "30 bedding + 225 matrix"."""
+    return " + ".join(f"{sequence.count} {sequence.name}" for sequence in program.sequences if sequence.count)
+
+
+def _tell(result: RunResult, program: Program, wall_s: float, console: Console) -> None:
     factor = result.rig_s / wall_s if wall_s > 0 else 0.0
+    parts = f" ({_parts(program)})" if result.done == result.total else ""
     console.print(
-        f"{result.done} of {result.total} brakings complete; {duration_text(result.rig_s)} of rig time in "
+        f"{result.done} of {result.total} brakings complete{parts}; {duration_text(result.rig_s)} of rig time in "
         f"{wall_s:.1f} s ({factor:.0f}× real time)",
         highlight=False,
     )
