@@ -226,8 +226,8 @@ def _tell(result: RunResult, program: Program, wall_s: float, console: Console) 
     factor = result.rig_s / wall_s if wall_s > 0 else 0.0
     parts = f" ({_parts(program)})" if result.done == result.total else ""
     console.print(
-        f"{result.done} of {result.total} brakings complete{parts}; {duration_text(result.rig_s)} of rig time in "
-        f"{wall_s:.1f} s ({factor:.0f}× real time)",
+        f"{result.done} of {result.total} brakings complete{parts}; "
+        f"{duration_text(result.rig_s)} of rig time in {wall_s:.1f} s ({factor:.0f}× real time)",
         highlight=False,
     )
 
