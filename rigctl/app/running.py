@@ -79,15 +79,15 @@ def run(options: RunOptions, console: Console) -> int:
     result = dry_run(program, rig)
     if not result.ok:
         raise ConfigError(problems_text(result, str(options.program)))
-    name = f"{program.name}-{datetime.now():%Y%m%d-%H%M%S}" if options.name is None else options.name
-    if not _NAME.fullmatch(name.replace(" ", "_") if options.name is None else name):
+    default = f"{program.name.replace(' ', '_')}-{datetime.now():%Y%m%d-%H%M%S}"
+    name = default if options.name is None else options.name
+    if not _NAME.fullmatch(name):
         raise ConfigError(
             f"{name!r} cannot be the name of a campaign.",
             place="--name",
             value=name,
             remedy="Use up to 100 letters, digits, '.', '_' and '-', beginning with a letter or digit.",
         )
-    name = name.replace(" ", "_")
     require_free_space(options.out, DISK_RESERVE_BYTES + 2 * result.data_bytes)
     file, copies = campaign_file.freeze(
         name,

@@ -18,7 +18,7 @@ from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED, TORQUE
 from rigctl.core.errors import RigctlError, RunError, SafetyTrip
 from rigctl.core.journal import Journal
 from rigctl.engine.guard import Checkpoint, Guard
-from rigctl.engine.procedures import Procedures, Recorder, Script
+from rigctl.engine.procedures import Procedures, Recorder, Script, at_rest
 from rigctl.engine.state import BreakOff, Outcome, Progress, RunResult, State, Verb
 from rigctl.hal.rig import Rig
 from sequences.braking import Braking
@@ -422,7 +422,7 @@ class Engine:
                 with contextlib.suppress(SafetyTrip):  # it may be the watchdog itself that has gone
                     self._guard.heartbeat(block.k, self._commanded())
                 self._tell(block)
-                if block.mean(PRESSURE) < 0.8 and abs(block.mean(SPEED)) < 1.0:
+                if at_rest(block):
                     self._journal.write("at_rest_after_trip", rig_s=block.end_s)
                     return
                 if block.end_s - start_s > SAFE_STATE_TIMEOUT_S:

@@ -28,6 +28,11 @@ SPIN_UP_TOLERANCE = (1.0, 0.02)  # 1/min, share of the set-point
 SPIN_UP_SETTLE_S = 0.5
 
 
+def at_rest(block: Block) -> bool:
+    """True when neither pressure nor speed is left."""
+    return block.mean(PRESSURE) <= REST_PRESSURE_BAR and abs(block.mean(SPEED)) <= REST_SPEED_RPM
+
+
 class Recorder(Protocol):
     """What the procedures need of the recorder process (`rigctl.recording.client.RecorderClient`)."""
 
@@ -237,7 +242,7 @@ class Procedures:
         self._air.blow(0.0)
         block = yield
         deadline_s = block.end_s + RUN_DOWN_TIMEOUT_S
-        while block.mean(PRESSURE) > REST_PRESSURE_BAR or abs(block.mean(SPEED)) > REST_SPEED_RPM:
+        while not at_rest(block):
             if block.end_s > deadline_s:
                 raise RunError(
                     f"the rig does not come to rest: {block.mean(SPEED):.1f} 1/min, "

@@ -26,6 +26,7 @@ from rigctl.core.ring import SampleRing
 from rigctl.core.wire import Link, Listener, connect
 from sim_hardware.brake_model import load_brake
 from sim_hardware.devices.options import add_plant_arguments
+from sim_hardware.devices.session import RING_NAME
 from sim_hardware.plant import Plant, PlantSettings, SoundJob, sound_of
 
 SOCKET_NAME = "microphone.sock"
@@ -140,7 +141,7 @@ def main() -> None:
     link = connect(options.run_dir / SOCKET_NAME, 10.0, "rig server")
     settings, brake = load_model(options.plant, PlantSettings), load_brake(options.brake)
     sound = sound_of(settings, brake, options.seed)
-    ring = SampleRing.attach(options.run_dir / "ring", 10.0)
+    ring = SampleRing.attach(options.run_dir / RING_NAME, 10.0)
     motion = SampleRing.attach(options.run_dir / MOTION_NAME, 10.0)
     Plant(settings, brake, seed=0).compile()
     link.send({"m": "ready"})

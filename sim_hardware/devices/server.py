@@ -139,15 +139,17 @@ class RigServer:
             return link
         except RigctlError as error:
             print(f"rig server: {error}", file=sys.stderr, flush=True)
-            self._poll.unregister(link)
-            link.close()
-            return None
+            return self._drop(link)
 
     def _check_safety(self) -> None:
         """A watchdog that has gone answers no more, and nobody renews the relay."""
         if self._safety is None:
             self._answered = True
             self._open_relay("the watchdog has gone")
+
+    def _drop(self, link: Link) -> None:
+        self._poll.unregister(link)
+        link.close()
 
     # -- parties --------------------------------------------------------------------------------
 
@@ -241,9 +243,7 @@ class RigServer:
         except DeviceError as error:
             print(f"rig server: {error}", file=sys.stderr, flush=True)
             if isinstance(error, LinkClosed):
-                self._poll.unregister(link)
-                link.close()
-                return None
+                return self._drop(link)
             return link
 
 
