@@ -1,0 +1,1 @@
+"""`rigctl model …`: the command line of the model studies, a module per family of commands."""
