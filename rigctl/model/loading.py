@@ -54,7 +54,7 @@ def read_model(path: Path) -> LinearModel:
 
 @contextmanager
 def study_errors(place: str) -> Iterator[None]:
-    """Turn what the numerics raise for wrong input (KeyError, ValueError, no convergence) into a `ConfigError`."""
+    """Turn what the numerics raise for wrong input (KeyError, ValueError, …) into a `ConfigError`."""
     try:
         yield
     except ConfigError:

@@ -1,7 +1,7 @@
 """What a study gives back, and how it becomes files: figures (PNG, SVG), tables (CSV, Parquet), facts (JSON).
 
-Job: `Study`, `Table`, `Column`, `write`. NOT its job: computing, drawing (each study draws its own figures with
-`rigctl.analysis.style`), printing on the console (`rigctl.app.model.common`).
+Job: `Study`, `Table`, `Column`, `write`. NOT its job: computing, drawing (each study draws its own figures
+with `rigctl.analysis.style`), printing on the console (`rigctl.app.model.common`).
 """
 
 from __future__ import annotations
@@ -56,7 +56,9 @@ class Table:
     def __post_init__(self) -> None:
         lengths = {column.name: len(column.values) for column in self.columns}
         if len(lengths) != len(self.columns):
-            raise ValueError(f"table {self.name}: two columns have one name: {[c.name for c in self.columns]}")
+            raise ValueError(
+                f"table {self.name}: two columns have one name: {[c.name for c in self.columns]}"
+            )
         if len(set(lengths.values())) > 1:
             raise ValueError(f"table {self.name}: columns of unequal length: {lengths}")
 
@@ -147,7 +149,10 @@ def _write(study: Study, folder: Path, formats: Sequence[str]) -> list[Path]:
             written.append(_write_parquet(table, folder / f"{stem}.parquet"))
     if "json" in formats:
         content = {"study": study.name, "title": study.title, "facts": plain(study.facts)}
-        save(f"{study.name}.json", (json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode())
+        save(
+            f"{study.name}.json",
+            (json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode(),
+        )
     return written
 
 
@@ -160,7 +165,9 @@ def _write_parquet(table: Table, path: Path) -> Path:
         pa.field(column.name, array.type, metadata={"unit": column.unit})
         for column, array in zip(table.columns, arrays, strict=True)
     ]
-    pq.write_table(pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={"title": table.title})), path)
+    pq.write_table(
+        pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={"title": table.title})), path
+    )
     return path
 
 
@@ -173,9 +180,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [plain(v) for v in value]
     if isinstance(value, np.generic):
-        return plain(value.item())
+        value = value.item()
     if isinstance(value, complex):
         return {"re": plain(value.real), "im": plain(value.imag)}
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return value
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -19,15 +19,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_hardware.brake_model.spec import BrakeSpec, Contact, load_spec
+from sim_hardware.brake_model.lines import Lines, Structure
+from sim_hardware.brake_model.spec import BrakeSpec, Contact, Spring, load_spec
 
 Array = NDArray[np.float64]
 
 #: friction force of a contact (N, towards +x on the pad, deviation from its mean) from the contact's index,
 #: the relative velocity pad minus disc along x (m/s) and the variation of the compression force (N)
 ContactFriction = Callable[[int, float, float], float]
-
-_FREEDOMS = ("x", "y", "phi")
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,7 @@ class Element:
 
     Attributes
     ----------
-    row_x, row_y : (n_dof,) relative displacement of its two points along x, y per degree of freedom
+    row_x, row_y : (n_dof,) relative displacement of its two points along its axes x, y per degree of freedom
     stiffness_n_m, damping_ns_m : values along (x, y)
     side : +1 or -1 at a contact (see `spec.Contact`), 0 otherwise
     load_share : part of the pad force at a contact, 0 otherwise
@@ -63,6 +62,21 @@ class TorsionElement:
     damping_nms_rad: float
 
 
+@dataclass(frozen=True, slots=True)
+class LinearParts:
+    """Matrices by what they are multiplied with, each (n_dof, n_dof); `inertia`: (n_dof,), the diagonal of M.
+
+    D = damping + mu damping_mu + k N damping_kn, K = stiffness + mu stiffness_mu.
+    """
+
+    inertia: Array
+    damping: Array
+    damping_mu: Array
+    damping_kn: Array
+    stiffness: Array
+    stiffness_mu: Array
+
+
 class Brake:
     """A brake assembled from its coupling tables. Immutable; SI units.
 
@@ -80,21 +94,21 @@ class Brake:
         self.slope_s_m = spec.operating.slope.value
         self.piston_area_m2 = spec.operating.piston_area.value
         self.effective_radius_m = spec.operating.effective_radius.value
-        self.freedoms = tuple(
-            f"{body.name}.{f}" for body in spec.bodies for f in _FREEDOMS if f in body.freedoms
-        )
+        self.structure = Structure(spec)
+        self.freedoms = self.structure.freedoms
         self._index = {name: i for i, name in enumerate(self.freedoms)}
-        self._values = spec.evaluated()
-        self.inertia = self._inertias()
-        self.elements = tuple(self._element(coupling) for coupling in spec.couplings)
+        values = np.array([parameter.value for parameter in spec.parameters.values()])
+        self._lines = self.structure.lines(self.structure.formulas.values(values))
+        self.inertia = self._lines.inertia
+        self.elements = tuple(self._element(i, coupling) for i, coupling in enumerate(spec.couplings))
         self.torsions = tuple(
             TorsionElement(
                 torsion.name,
-                self._freedom_row(torsion.between[0], "phi") - self._freedom_row(torsion.between[1], "phi"),
-                self._values[f"torsions '{torsion.name}': stiffness"],
-                self._values.get(f"torsions '{torsion.name}': damping", 0.0),
+                self._lines.rows[i],
+                float(self._lines.stiffness[i]),
+                float(self._lines.damping[i]),
             )
-            for torsion in spec.torsions
+            for i, torsion in enumerate(spec.torsions, start=2 * len(spec.couplings))
         )
 
     # -- structure
@@ -134,49 +148,18 @@ class Brake:
         """
         return Brake(self.spec.with_values(changes))
 
-    def _freedom_row(self, body: str, freedom: str) -> Array:
-        row = np.zeros(self.n_dof)
-        if f"{body}.{freedom}" in self._index:
-            row[self._index[f"{body}.{freedom}"]] = 1.0
-        return row
-
-    def _inertias(self) -> Array:
-        values = self._values
-        keys = {"x": "mass", "y": "mass", "phi": "inertia"}
-        pairs = (name.rsplit(".", 1) for name in self.freedoms)
-        return np.array([values[f"bodies '{body}': {keys[freedom]}"] for body, freedom in pairs])
-
-    def _point_rows(self, key: str) -> tuple[Array, Array]:
-        """Displacement of a connecting point per degree of freedom, along x and y (eq 10)."""
-        body = key.split(".", maxsplit=1)[0]
-        r_x, r_y = self._values[f"points '{key}': x"], self._values[f"points '{key}': y"]
-        rotation = self._freedom_row(body, "phi")
-        return self._freedom_row(body, "x") - r_y * rotation, self._freedom_row(body, "y") + r_x * rotation
-
-    def _element(self, coupling: object) -> Element:
-        name, (first, second) = coupling.name, coupling.between  # type: ignore[attr-defined]
-        first_x, first_y = self._point_rows(first)
-        second_x, second_y = self._point_rows(second)
-
-        def value(key: str) -> float:
-            return self._values.get(f"couplings '{name}': {key}", 0.0)
-
-        rows = (first_x - second_x, first_y - second_y)
-        if isinstance(coupling, Contact):
-            return Element(
-                name,
-                *rows,
-                (0.0, value("stiffness")),
-                (0.0, value("damping")),
-                side=coupling.side,
-                load_share=coupling.load_share,
-                pad=first.split(".")[0],
-            )
+    def _element(self, number: int, coupling: Spring | Contact) -> Element:
+        lines, (x, y) = self._lines, (2 * number, 2 * number + 1)
+        contact = isinstance(coupling, Contact)
         return Element(
-            name,
-            *rows,
-            (value("stiffness_x"), value("stiffness_y")),
-            (value("damping_x"), value("damping_y")),
+            coupling.name,
+            lines.rows[x],
+            lines.rows[y],
+            (float(lines.stiffness[x]), float(lines.stiffness[y])),
+            (float(lines.damping[x]), float(lines.damping[y])),
+            side=coupling.side if contact else 0,
+            load_share=coupling.load_share if contact else 0.0,
+            pad=coupling.between[0].split(".")[0] if contact else "",
         )
 
     # -- forces: the loop over coupling elements
@@ -241,34 +224,17 @@ class Brake:
         return np.diag(self.inertia)
 
     @cached_property
-    def _parts(self) -> tuple[Array, Array, Array, Array, Array]:
-        """K without friction, its derivative by mu, the same for D, and dD/d(k N) of falling friction."""
-        k0, k1, d0, d1, d2 = (np.zeros((self.n_dof, self.n_dof)) for _ in range(5))
-        for element in self.elements:
-            for row, stiffness, damping in zip(
-                (element.row_x, element.row_y), element.stiffness_n_m, element.damping_ns_m, strict=True
-            ):
-                k0 += stiffness * np.outer(row, row)
-                d0 += damping * np.outer(row, row)
-            if element.side:  # friction: F_x = -mu N~ with N~ = side (c du_y + d dv_y), and -k N w dv_x
-                across = np.outer(element.row_x, element.row_y)
-                k1 -= element.side * element.stiffness_n_m[1] * across
-                d1 -= element.side * element.damping_ns_m[1] * across
-                d2 -= element.load_share * np.outer(element.row_x, element.row_x)
-        for torsion in self.torsions:
-            k0 += torsion.stiffness_nm_rad * np.outer(torsion.row, torsion.row)
-            d0 += torsion.damping_nms_rad * np.outer(torsion.row, torsion.row)
-        return k0, k1, d0, d1, d2
+    def _parts(self) -> LinearParts:
+        return linear_parts(self.structure, self._lines)
 
     def stiffness_matrix(self, mu: float = 0.0) -> Array:
         """K(mu), (n_dof, n_dof); not symmetric for mu > 0 (nonconservative forces, section 2.2)."""
-        k0, k1, *_ = self._parts
-        return k0 + mu * k1
+        return self._parts.stiffness + mu * self._parts.stiffness_mu
 
     def damping_matrix(self, mu: float = 0.0, slope_s_m: float = 0.0, pad_force_n: float = 0.0) -> Array:
         """D(mu, k, N), (n_dof, n_dof); falling friction of slope k adds negative damping k N (eq 31)."""
-        _, _, d0, d1, d2 = self._parts
-        return d0 + mu * d1 + slope_s_m * pad_force_n * d2
+        p = self._parts
+        return p.damping + mu * p.damping_mu + slope_s_m * pad_force_n * p.damping_kn
 
     def pad_force_n(self, pressure_pa: float) -> float:
         """Mean normal force of one pad at a brake pressure."""
@@ -295,6 +261,51 @@ class Brake:
             -self.damping_matrix(mu, slope, self.pad_force_n(pressure_pa)) / self.inertia[:, None]
         )
         return matrix
+
+
+def linear_parts(structure: Structure, lines: Lines, change: Lines | None = None) -> LinearParts:
+    """Matrices of coupling lines; with `change`, their derivatives along that change of the lines.
+
+    Friction at a contact: F_x = -mu N~ with N~ = side (c du_y + d dv_y), and -k N w dv_x (eqs 28, 31).
+    """
+    pairs = np.array([(x, y) for x, y, _, _ in structure.contacts])
+    side = np.array([side for *_, side, _ in structure.contacts], dtype=float)
+    share = np.array([share for *_, share in structure.contacts])
+    x, y = lines.rows[pairs[:, 0]], lines.rows[pairs[:, 1]]
+    if change is None:
+        c_side, d_side = side * lines.stiffness[pairs[:, 1]], side * lines.damping[pairs[:, 1]]
+        return LinearParts(
+            lines.inertia,
+            _sum(lines.rows, lines.damping, lines.rows),
+            _sum(x, -d_side, y),
+            _sum(x, -share, x),
+            _sum(lines.rows, lines.stiffness, lines.rows),
+            _sum(x, -c_side, y),
+        )
+    dx, dy = change.rows[pairs[:, 0]], change.rows[pairs[:, 1]]
+
+    def own(values: Array, rates: Array) -> Array:
+        mixed = _sum(change.rows, values, lines.rows)
+        return _sum(lines.rows, rates, lines.rows) + mixed + mixed.T
+
+    def across(values: Array, rates: Array) -> Array:
+        values, rates = -side * values[pairs[:, 1]], -side * rates[pairs[:, 1]]
+        return _sum(x, rates, y) + _sum(dx, values, y) + _sum(x, values, dy)
+
+    slipping = _sum(dx, -share, x)
+    return LinearParts(
+        change.inertia,
+        own(lines.damping, change.damping),
+        across(lines.damping, change.damping),
+        slipping + slipping.T,
+        own(lines.stiffness, change.stiffness),
+        across(lines.stiffness, change.stiffness),
+    )
+
+
+def _sum(left: Array, factors: Array, right: Array) -> Array:
+    """Sum over lines of factor * outer(left, right)."""
+    return (left * factors[:, None]).T @ right
 
 
 def load_brake(path: str | Path) -> Brake:

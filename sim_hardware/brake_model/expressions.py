@@ -28,6 +28,7 @@ DIMENSIONLESS = Dimension(0, 0, 0)
 #: every unit a brake file may use, with its dimension (rad counts as 1)
 UNITS: dict[str, Dimension] = {
     "1": DIMENSIONLESS,
+    "rad": DIMENSIONLESS,
     "kg": Dimension(1, 0, 0),
     "kg m2": Dimension(1, 2, 0),
     "m": Dimension(0, 1, 0),

@@ -1,7 +1,7 @@
 """What every linear study asks of a model: matrices M, D, K as functions of named quantities.
 
-The study functions (eigenvalues, tracking, boundaries, maps, sensitivities, variations) take any `LinearModel`:
-our brake (`parametric.LinearBrake`) or matrices made elsewhere (`foreign.MatrixModel`).
+The studies (eigenvalues, tracking, boundaries, maps, sensitivities, variations) take any `LinearModel`: our
+brake (`parametric.LinearBrake`) or matrices made elsewhere (`foreign.MatrixModel`).
 NOT its job: any study, any brake.
 """
 

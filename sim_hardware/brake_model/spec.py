@@ -3,7 +3,8 @@
 Topology is data: bodies, connecting points and couplings may be added or removed by editing the file only.
 Refused with place, value and remedy: unknown keys, parameters that are unknown, not finite, never used or of
 the wrong unit for their use, masses that are not positive, couplings to unknown points, points that no
-coupling uses (a coupling is missing), pads whose contacts do not carry the whole pad force.
+coupling uses (a coupling is missing), pads whose contacts do not carry the whole pad force, parameter groups
+with unknown members.
 NOT its job: mechanics (`assembly`), or turning pydantic's error into one line for the user (`rigctl.config`).
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
@@ -25,6 +27,9 @@ Expression = Annotated[str, Field(min_length=1)]
 Freedom = Literal["x", "y", "phi"]
 
 _SHARE_TOLERANCE = 1e-9
+#: names by which studies call the operating point
+_RESERVED = {"mu", "slope", "pressure", "piston_area"}
+_PLACES = "name a parameter or a place such as piston_l.stiffness_y, inner_pad.piston_l.x, disc.mass"
 
 
 class _Frozen(BaseModel):
@@ -119,7 +124,10 @@ class Point(_Frozen):
 
 
 class Spring(_Frozen):
-    """Entry of table g: linear spring and damper along x and y between two points (eq 16)."""
+    """Entry of table g: linear spring and damper along x and y between two points (eq 16).
+
+    `angle` turns the element's axes from x towards y (rad); without it they are those of the brake.
+    """
 
     kind: Literal["spring"]
     name: Name
@@ -128,6 +136,7 @@ class Spring(_Frozen):
     stiffness_y: Expression | None = None
     damping_x: Expression | None = None
     damping_y: Expression | None = None
+    angle: Expression | None = None
 
     @model_validator(mode="after")
     def _acts(self) -> Self:
@@ -167,6 +176,33 @@ class Torsion(_Frozen):
     damping: Expression | None = None
 
 
+class Group(_Frozen):
+    """Quantities that an engineer changes together (section 4.3.2): parameters, or places of expressions such
+    as "piston_l.stiffness_y", "inner_pad.piston_l.x", "disc.mass".
+
+    `leading` and `trailing` members can be changed in opposite directions too; `both` have no side.
+    """
+
+    name: Name
+    title: Annotated[str, Field(min_length=1)]
+    leading: tuple[str, ...] = ()
+    trailing: tuple[str, ...] = ()
+    both: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _members(self) -> Self:
+        members = (*self.leading, *self.trailing, *self.both)
+        _unique(f"groups '{self.name}'", members)
+        if not members or bool(self.leading) != bool(self.trailing):
+            raise refuse(
+                f"group '{self.name}' has {'members on one side only' if members else 'no members'}",
+                place=f"groups '{self.name}'",
+                value=members,
+                remedy="name members in `both`, or in `leading` and `trailing`",
+            )
+        return self
+
+
 class BrakeSpec(_Frozen):
     """A whole brake file. See the module docstring for what is refused."""
 
@@ -178,6 +214,7 @@ class BrakeSpec(_Frozen):
     points: tuple[Point, ...]
     couplings: tuple[Annotated[Spring | Contact, Field(discriminator="kind")], ...]
     torsions: tuple[Torsion, ...] = ()
+    groups: tuple[Group, ...] = ()
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -187,12 +224,13 @@ class BrakeSpec(_Frozen):
         self._check_bodies_and_points()
         self._check_quantities()
         self._check_pads()
+        self._check_groups()
         return self
 
     def evaluated(self) -> dict[str, float]:
         """Value (SI) of every expression in the file by its place, for example "points 'disc.hub': x"."""
         quantities = self.quantities
-        return {place: evaluate(text, quantities, place=place).value for place, text, _, _ in self._uses()}
+        return {place: evaluate(text, quantities, place=place).value for place, text, _, _ in self.uses()}
 
     @property
     def quantities(self) -> dict[str, Quantity]:
@@ -237,8 +275,8 @@ class BrakeSpec(_Frozen):
                 remedy="a coupling is missing: add it to [[couplings]], or remove the point",
             )
 
-    def _uses(self) -> Iterator[tuple[str, str, str | None, str]]:
-        """Yield (place, expression, sign or None, unit) of every expression."""
+    def uses(self) -> Iterator[tuple[str, str, str | None, str]]:
+        """Yield (place, expression, sign or None, unit) of every expression of the file."""
         for body in self.bodies:
             yield from _given(f"bodies '{body.name}'", "positive", {"mass": "kg", "inertia": "kg m2"}, body)
         for point in self.points:
@@ -249,14 +287,22 @@ class BrakeSpec(_Frozen):
             damping = {key: "N s/m" for key in ("damping", "damping_x", "damping_y")}
             yield from _given(place, "positive", stiffness, coupling)
             yield from _given(place, "not negative", damping, coupling)
+            yield from _given(place, None, {"angle": "rad"}, coupling)
         for torsion in self.torsions:
             place = f"torsions '{torsion.name}'"
             yield from _given(place, "positive", {"stiffness": "N m/rad"}, torsion)
             yield from _given(place, "not negative", {"damping": "N m s/rad"}, torsion)
 
     def _check_quantities(self) -> None:
+        for name in sorted(set(self.parameters) & _RESERVED):
+            raise refuse(
+                f"the name '{name}' is taken by the operating point",
+                place=f"parameters.{name}",
+                value=self.parameters[name].value,
+                remedy="choose another name",
+            )
         quantities = _Recording(self.quantities)
-        for place, text, sign, unit in self._uses():
+        for place, text, sign, unit in self.uses():
             _expect(evaluate(text, quantities, place=place), unit, place=place, sign=sign, text=text)
         for name in sorted(set(self.parameters) - quantities.used):
             raise refuse(
@@ -265,6 +311,20 @@ class BrakeSpec(_Frozen):
                 value=self.parameters[name].value,
                 remedy="use it in a body, point or coupling, or remove it: changing it would do nothing",
             )
+
+    def _check_groups(self) -> None:
+        _unique("groups", (group.name for group in self.groups))
+        known = {*(place_name(place) for place, *_ in self.uses()), *self.parameters}
+        for group in self.groups:
+            for member in (*group.leading, *group.trailing, *group.both):
+                if member not in known:
+                    near = get_close_matches(member, known, n=3)
+                    raise refuse(
+                        f"unknown quantity '{member}'",
+                        place=f"groups '{group.name}'",
+                        value=member,
+                        remedy=f"did you mean {', '.join(near)}?" if near else _PLACES,
+                    )
 
     def _check_pads(self) -> None:
         shares: dict[str, float] = {}
@@ -311,6 +371,12 @@ def load_spec(path: str | Path) -> BrakeSpec:
     """
     with Path(path).open("rb") as file:
         return BrakeSpec.model_validate(tomllib.load(file))
+
+
+def place_name(place: str) -> str:
+    """Short name of a place: "couplings 'piston_l': stiffness_y" -> "piston_l.stiffness_y"."""
+    owner, key = place.rsplit(": ", 1)
+    return f"{owner.split(chr(39))[1]}.{key}"
 
 
 def _given(

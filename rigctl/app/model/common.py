@@ -5,6 +5,7 @@ Job: one way to name models, ranges and formats, one look of results. NOT its jo
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,7 +18,9 @@ from rigctl.model.output import FORMATS, Study, Table, plain, write
 
 ModelArgument = Annotated[
     Path,
-    typer.Argument(help="Brake file (.toml), or matrices made elsewhere (.npz, .mat, folder of .mtx).", metavar="MODEL"),
+    typer.Argument(
+        help="Brake file (.toml), or matrices made elsewhere (.npz, .mat, folder of .mtx).", metavar="MODEL"
+    ),
 ]
 OutOption = Annotated[
     Path | None, typer.Option("--out", help="Folder for figures, tables and JSON. [default: print only]")
@@ -27,7 +30,9 @@ FormatOption = Annotated[
 ]
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="Other value for a quantity (SI; pressure in bar). Repeatable."),
+    typer.Option(
+        "--set", metavar="NAME=VALUE", help="Other value for a quantity (SI; pressure in bar). Repeatable."
+    ),
 ]
 DEFAULT_FORMATS = "png,svg,csv,json"
 _LINES = 24
@@ -54,7 +59,7 @@ def parse_settings(texts: list[str] | None) -> dict[str, float]:
             value = float(number)
         except ValueError:
             value = float("nan")
-        if not name or name in values or value != value:
+        if not name or name in values or math.isnan(value):
             raise ConfigError(
                 "is not NAME=NUMBER, or names a quantity twice.",
                 place="--set", value=text, remedy="For example --set mu=0.45 --set c_pis_n=2.2e8.",
