@@ -1,0 +1,65 @@
+"""Ranges of quantities on the command line: NAME:FROM:TO:COUNT.
+
+Job: one way to write a range for all `rigctl model` commands, with errors that teach it. NOT its job: knowing
+which quantities a model has (the model says so when it is asked).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigctl.core.errors import ConfigError
+
+RANGE_METAVAR = "NAME:FROM:TO:COUNT"
+#: most values of one range; more is a slip of the keyboard
+MOST_VALUES = 1_000_000
+_EXAMPLE = "For example mu:0:1:128 (128 values from 0 to 1) or pressure:0:30:61 (bar)."
+
+
+def parse_range(text: str, place: str = "range") -> tuple[str, NDArray[np.float64]]:
+    """Name and values of a range such as "mu:0:1:128".
+
+    Parameters
+    ----------
+    text : NAME:FROM:TO:COUNT; COUNT evenly spaced values, both ends included. FROM may be larger than TO.
+        A single value is NAME:VALUE:VALUE:1.
+    place : what the error names, "--x"
+
+    Returns
+    -------
+    name, values
+        values of shape (COUNT,), in the quantity's unit
+
+    Raises
+    ------
+    ConfigError
+        not of that form, or a range without extent
+    """
+
+    def refuse(problem: str) -> ConfigError:
+        return ConfigError(problem, place=place, value=text, remedy=_EXAMPLE)
+
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) != 4 or not parts[0]:
+        raise refuse(f"is not {RANGE_METAVAR}.")
+    name = parts[0]
+    try:
+        first, last = float(parts[1]), float(parts[2])
+    except ValueError:
+        raise refuse("FROM and TO must be numbers.") from None
+    if not (math.isfinite(first) and math.isfinite(last)):
+        raise refuse("FROM and TO must be finite numbers.")
+    try:
+        count = int(parts[3])
+    except ValueError:
+        raise refuse("COUNT must be a whole number.") from None
+    if not 1 <= count <= MOST_VALUES:
+        raise refuse(f"COUNT must be from 1 to {MOST_VALUES}.")
+    if count == 1 and first != last:
+        raise refuse("a range of COUNT 1 needs FROM equal to TO.")
+    if count > 1 and first == last:
+        raise refuse("FROM and TO are equal: a range needs an extent.")
+    return name, np.linspace(first, last, count)
