@@ -109,7 +109,10 @@ def write(study: Study, folder: Path, formats: Sequence[str] = FORMATS) -> list[
     unknown = [f for f in formats if f not in FORMATS]
     if unknown:
         raise ConfigError(
-            "no such format.", place="--format", value=unknown[0], remedy=f"Known: {', '.join(FORMATS)}."
+            "no such format.",
+            place=f"--format {unknown[0]}",
+            value=unknown[0],
+            remedy=f"Known: {', '.join(FORMATS)}.",
         )
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,18 @@ from importlib import import_module
 import typer
 
 #: modules with a function `register(app)`, in the order of the help
-_FAMILIES = ("pairs", "locus", "modes", "maps", "sensitivity", "motion", "limit_cycle", "studies", "minimal")
+_FAMILIES = (
+    "show",
+    "pairs",
+    "locus",
+    "modes",
+    "maps",
+    "sensitivity",
+    "motion",
+    "limit_cycle",
+    "studies",
+    "minimal",
+)
 
 
 def model_app() -> typer.Typer:
@@ -15,8 +26,9 @@ def model_app() -> typer.Typer:
     app = typer.Typer(
         name="model",
         help="Studies of brake models: eigenvalues, stability, sensitivity, squeal, design.\n\n"
-        "MODEL is a brake file (configs/brakes/model.toml) or matrices made elsewhere (.npz, .mat, folder of .mtx). "
-        "Quantities are named as in `rigctl model show MODEL`. With --out a study writes figures, tables and JSON.",
+        "MODEL is a brake file (configs/brakes/model.toml) or matrices made elsewhere (.npz, .mat, folder of "
+        ".mtx). Quantities are named as in `rigctl model show MODEL --names`. With --out a study writes "
+        "figures, tables and JSON.",
         no_args_is_help=True,
     )
     for family in _FAMILIES:

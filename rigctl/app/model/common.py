@@ -36,11 +36,15 @@ SetOption = Annotated[
 ]
 DEFAULT_FORMATS = "png,svg,csv,json"
 _LINES = 24
+_WIDE = 160
 
 
 def console() -> Console:
     """Console for results."""
-    return Console(soft_wrap=True, highlight=False)
+    screen = Console(soft_wrap=True, highlight=False)
+    if not screen.is_terminal:
+        screen = Console(soft_wrap=True, highlight=False, width=_WIDE)  # a pipe or a file folds nothing
+    return screen
 
 
 def parse_settings(texts: list[str] | None) -> dict[str, float]:
@@ -62,16 +66,24 @@ def parse_settings(texts: list[str] | None) -> dict[str, float]:
         if not name or name in values or math.isnan(value):
             raise ConfigError(
                 "is not NAME=NUMBER, or names a quantity twice.",
-                place="--set", value=text, remedy="For example --set mu=0.45 --set c_pis_n=2.2e8.",
+                place=f"--set {text}", value=text, remedy="For example --set mu=0.45 --set c_pis_n=2.2e8.",
             )  # fmt: skip
         values[name] = value
     return values
 
 
-def finish(study: Study, out: Path | None, formats: str, *, tables: tuple[str, ...] | None = None) -> None:
+def finish(
+    study: Study,
+    out: Path | None,
+    formats: str,
+    *,
+    tables: tuple[str, ...] | None = None,
+    lines: int | None = _LINES,
+) -> None:
     """Print a study, and write its files where `--out` is given.
 
-    `tables`: names of the tables to print (all where None); files always get all.
+    `tables`: names of the tables to print (all where None), `lines` of each (all where None); files always
+    get everything.
     """
     screen = console()
     screen.print(f"[bold]{study.title}[/bold]")
@@ -80,22 +92,25 @@ def finish(study: Study, out: Path | None, formats: str, *, tables: tuple[str, .
             screen.print(f"  {key.replace('_', ' ')}: {cell(value)}")
     for table in study.tables:
         if tables is None or table.name in tables:
-            screen.print(rich_table(table))
+            screen.print(rich_table(table, lines))
     if out is not None:
         paths = write(study, out, tuple(f.strip() for f in formats.split(",") if f.strip()))
         screen.print(f"{len(paths)} files in {out}: {', '.join(path.name for path in paths)}")
 
 
-def rich_table(table: Table, lines: int = _LINES) -> RichTable:
+def rich_table(table: Table, lines: int | None = _LINES) -> RichTable:
     """A table for the console; its first lines where it is long."""
     shown = RichTable(title=table.title, title_justify="left", title_style="bold", header_style="", box=None)
     for column in table.columns:
         numeric = all(isinstance(plain(v), int | float | None) for v in column.values)
-        shown.add_column(column.heading, justify="right" if numeric else "left")
+        first = column is table.columns[0]
+        shown.add_column(
+            column.heading.replace("_", " "), justify="right" if numeric else "left", no_wrap=first or numeric
+        )
     rows = table.rows()
     for row in rows[:lines]:
         shown.add_row(*map(cell, row))
-    if len(rows) > lines:
+    if lines is not None and len(rows) > lines:
         shown.caption = f"… {len(rows) - lines} more lines; --out writes all"
     return shown
 
