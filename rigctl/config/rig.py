@@ -36,6 +36,18 @@ class DeviceConfig(BaseModel):
         return dict(self.model_extra or {})
 
 
+class BusConfig(BaseModel):
+    """A field bus that several devices share: python-can's `interface` and its own keyword arguments."""
+
+    model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
+    interface: Annotated[str, Field(min_length=1)]
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All keyword arguments."""
+        return {"interface": self.interface, **(self.model_extra or {})}
+
+
 class Devices(_Frozen):
     """The five roles that every rig fills."""
 
@@ -81,6 +93,7 @@ class RigConfig(_Frozen):
     name: Annotated[str, Field(min_length=1, max_length=120)]
     simulated: bool
     devices: Devices
+    buses: dict[str, BusConfig] = Field(default_factory=dict[str, BusConfig])
     capabilities: RigCapabilities
     conditioning: ConditioningConfig
     friction: FrictionConfig

@@ -15,6 +15,7 @@ from typing import Any, Protocol, TypeVar
 
 from rigctl.core.blocks import Block
 from rigctl.core.channels import ChannelSpec
+from rigctl.hal.sharing import Lease, StatusBoard
 
 T = TypeVar("T")
 
@@ -51,6 +52,14 @@ class RigContext:
         The rig file, for messages.
     folder : Path
         Folder of the rig file; relative paths in settings start here.
+    log_dir : Path or None
+        Where devices may write logs.
+    buses : mapping
+        The rig file's `[buses.NAME]` tables.
+    lease : Lease
+        In force while the control loop asks for blocks.
+    board : StatusBoard
+        What the devices say of themselves; the acquisition puts a copy into every block.
     """
 
     run_dir: Path
@@ -59,6 +68,9 @@ class RigContext:
     place: str
     folder: Path
     log_dir: Path | None = None
+    buses: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Mapping[str, Any]])
+    lease: Lease = field(default_factory=Lease)
+    board: StatusBoard = field(default_factory=StatusBoard)
     _shared: dict[str, Any] = field(default_factory=dict)
 
     def share(self, key: str, make: Callable[[], T]) -> T:

@@ -40,6 +40,7 @@ class Rig:
 
     def __init__(self, config: RigConfig, context: RigContext, registry: Registry) -> None:
         self.config = config
+        context.buses = {name: bus.settings for name, bus in config.buses.items()}
         self.context = context
         devices: dict[str, Any] = {}
         for role in ROLES:
@@ -123,6 +124,7 @@ class Rig:
             The hardware has fallen silent or gone.
         """
         while True:
+            self.context.lease.renew()
             yield self.acquisition.next_block(self._request)
 
     def make_safe(self) -> None:
