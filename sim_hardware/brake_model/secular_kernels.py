@@ -1,0 +1,288 @@
+"""Compiled: eigenvalues along a line of points as roots of a secular equation, continued from point to point.
+
+The equation (see `secular`): F(l) = 1 + sum_j (c_j l + e_j) / (l^2 - a_j l + b_j) = 0, one real quadratic for each
+pair of nodes. Every root is predicted from its past, corrected by Newton, and all of them are guarded together.
+NOT its job: building coefficients, LAPACK for the points flagged here (`secular`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
+#: sums may be reordered; infinities and not-a-numbers keep their meaning, the guards need them
+FAST = {"reassoc", "contract", "arcp", "nsz"}
+#: most past points a root is predicted from
+HISTORY = 6
+#: last correction of a root, relative to it; Newton then leaves its square
+_STEP = 3e-9
+_STEPS = 6
+#: |F'| |l| of a root below which it has a close neighbour and is left to LAPACK
+_ISOLATED = 2e-2
+#: errors of the sums of eigenvalues and of their squares, relative to the sums of magnitudes
+_SUM = 2e-12
+_SWEEPS = 40
+#: a pair this near to the real axis, relative to its magnitude, is not decided here
+_REAL = 1e-7
+
+SOLVED, FLAGGED = 0, 1
+
+
+@njit(fastmath=FAST, inline="always", **OPTIONS)
+def _secular(
+    re: float, im: float, a: Array, b: Array, c: Array, e: Array
+) -> tuple[float, float, float, float]:
+    """F and F' at re + i im."""
+    square_re, square_im = re * re - im * im, 2.0 * re * im
+    twice_re, twice_im = 2.0 * re, 2.0 * im
+    f_re, f_im, g_re, g_im = 1.0, 0.0, 0.0, 0.0
+    for j in range(a.size):
+        q_re = square_re - a[j] * re + b[j]
+        q_im = square_im - a[j] * im
+        inverse = 1.0 / (q_re * q_re + q_im * q_im)
+        n_re = c[j] * re + e[j]
+        n_im = c[j] * im
+        t_re = (n_re * q_re + n_im * q_im) * inverse
+        t_im = (n_im * q_re - n_re * q_im) * inverse
+        s_re = twice_re - a[j]
+        u_re = c[j] - t_re * s_re + t_im * twice_im
+        u_im = -t_re * twice_im - t_im * s_re
+        g_re += (u_re * q_re + u_im * q_im) * inverse
+        g_im += (u_im * q_re - u_re * q_im) * inverse
+        f_re += t_re
+        f_im += t_im
+    return f_re, f_im, g_re, g_im
+
+
+@njit(**OPTIONS)
+def _correct(roots: Array, count: int, a: Array, b: Array, c: Array, e: Array) -> bool:
+    """Correct `count` roots (2, n) by Newton; whether all came to rest, each alone."""
+    for k in range(count):
+        re, im = roots[0, k], roots[1, k]
+        real = im == 0.0
+        rest = False
+        for _ in range(_STEPS):
+            f_re, f_im, g_re, g_im = _secular(re, im, a, b, c, e)
+            slope = g_re * g_re + g_im * g_im
+            step_re = (f_re * g_re + f_im * g_im) / slope
+            step_im = 0.0 if real else (f_im * g_re - f_re * g_im) / slope
+            re -= step_re
+            im -= step_im
+            size = re * re + im * im
+            if step_re * step_re + step_im * step_im <= _STEP * _STEP * size:
+                rest = slope * size > _ISOLATED * _ISOLATED
+                break
+        if not rest or (not real and im <= _REAL * abs(re)):
+            return False
+        roots[0, k], roots[1, k] = re, im
+    return True
+
+
+@njit(**OPTIONS)
+def _complete(roots: Array, count: int, first: float, second: float) -> bool:
+    """Whether the roots are all eigenvalues: their sum and the sum of their squares are traces of A and A^2."""
+    sum_1, sum_2, size_1, size_2 = 0.0, 0.0, 0.0, 0.0
+    for k in range(count):
+        re, im = roots[0, k], roots[1, k]
+        weight = 1.0 if im == 0.0 else 2.0
+        size = re * re + im * im
+        sum_1 += weight * re
+        sum_2 += weight * (re * re - im * im)
+        size_1 += weight * np.sqrt(size)
+        size_2 += weight * size
+    return abs(sum_1 - first) <= _SUM * size_1 and abs(sum_2 - second) <= _SUM * size_2
+
+
+@njit(**OPTIONS)
+def _aberth(start: Array, count: int, roots: Array, a: Array, b: Array, c: Array, e: Array) -> int:
+    """All roots anew by Ehrlich and Aberth from those of a neighbour, reals and pairs free to change.
+
+    Returns the number of roots with Im >= 0 now in `roots`, or 0 where they did not come to rest.
+    """
+    n = 2 * a.size
+    re, im, done = np.empty(n), np.empty(n), np.zeros(n, np.bool_)
+    m = 0
+    for k in range(count):  # a little apart and off the axis, so that pairs may part
+        x, y = start[0, k], start[1, k]
+        shift = 1e-3 * np.sqrt(x * x + y * y)
+        if y == 0.0:
+            re[m], im[m] = x, (shift if k % 2 == 0 else -shift)
+            m += 1
+        else:
+            re[m], im[m] = x + shift, y
+            re[m + 1], im[m + 1] = x - shift, -y
+            m += 2
+    left = n
+    for _ in range(_SWEEPS):
+        for k in range(n):
+            if done[k]:
+                continue
+            f_re, f_im, g_re, g_im = _secular(re[k], im[k], a, b, c, e)
+            x, y = re[k], im[k]
+            # p'/p = F'/F + sum of 1/(l - node), less the other roots: each is drawn to a zero of its own
+            inverse = 1.0 / (f_re * f_re + f_im * f_im)
+            r_re, r_im = (g_re * f_re + g_im * f_im) * inverse, (g_im * f_re - g_re * f_im) * inverse
+            for j in range(a.size):
+                n_re, n_im = 2.0 * x - a[j], 2.0 * y
+                q_re, q_im = x * x - y * y - a[j] * x + b[j], 2.0 * x * y - a[j] * y
+                inverse = 1.0 / (q_re * q_re + q_im * q_im)
+                r_re += (n_re * q_re + n_im * q_im) * inverse
+                r_im += (n_im * q_re - n_re * q_im) * inverse
+            for i in range(n):
+                if i != k:
+                    d_re, d_im = x - re[i], y - im[i]
+                    inverse = 1.0 / (d_re * d_re + d_im * d_im)
+                    r_re -= d_re * inverse
+                    r_im += d_im * inverse
+            inverse = 1.0 / (r_re * r_re + r_im * r_im)
+            step_re, step_im = r_re * inverse, -r_im * inverse
+            re[k] -= step_re
+            im[k] -= step_im
+            if not step_re * step_re + step_im * step_im > 1e-26 * (x * x + y * y):
+                done[k] = True
+                left -= 1
+        if left == 0:
+            break
+    if left > 0:
+        return 0
+    found, below = 0, 0
+    for k in range(n):
+        size = np.sqrt(re[k] * re[k] + im[k] * im[k])
+        if abs(im[k]) <= 1e-9 * size:
+            roots[0, found], roots[1, found] = re[k], 0.0
+            found += 1
+        elif im[k] > 0.0:
+            roots[0, found], roots[1, found] = re[k], im[k]
+            found += 1
+        else:
+            below += 1
+    reals = 0
+    for k in range(found):
+        reals += roots[1, k] == 0.0
+    return found if found - reals == below and found + below == n else 0
+
+
+@njit(**OPTIONS)
+def _store(roots: Array, count: int, order: NDArray[np.int64], out: NDArray[np.complex128]) -> None:
+    """Write all eigenvalues of a point, sorted by frequency, a pair as l and its conjugate."""
+    for k in range(1, count):  # insertion: the order of the last point is nearly right
+        index = order[k]
+        j = k - 1
+        while j >= 0 and (
+            roots[1, order[j]] > roots[1, index]
+            or (roots[1, order[j]] == roots[1, index] and roots[0, order[j]] > roots[0, index])
+        ):
+            order[j + 1] = order[j]
+            j -= 1
+        order[j + 1] = index
+    m = 0
+    for k in range(count):
+        re, im = roots[0, order[k]], roots[1, order[k]]
+        out[m] = complex(re, im)
+        m += 1
+        if im != 0.0:
+            out[m] = complex(re, -im)
+            m += 1
+
+
+@njit(**OPTIONS)
+def _walk(
+    basis: Array,
+    weights: Array,
+    a: Array,
+    b: Array,
+    numerators: Array,
+    sums: Array,
+    start: Array,
+    start_count: int,
+    out: NDArray[np.complex128],
+    state: NDArray[np.uint8],
+) -> None:
+    """Eigenvalues at all points of a line; see `walk_rows`."""
+    points, terms, half = basis.shape[0], basis.shape[1], a.size
+    c, e = np.empty(half), np.empty(half)
+    past = np.empty((HISTORY, 2, 2 * half))
+    roots = np.empty((2, 2 * half))
+    order = np.arange(2 * half)
+    count, known = start_count, 0
+    last = start.copy()
+    for i in range(points):
+        for j in range(half):
+            c[j], e[j] = numerators[0, 0, j], numerators[1, 0, j]
+        first, second = sums[0, 0], sums[1, 0]
+        for t in range(1, terms):
+            value = basis[i, t]
+            for j in range(half):
+                c[j] += value * numerators[0, t, j]
+                e[j] += value * numerators[1, t, j]
+            first += value * sums[0, t]
+            second += value * sums[1, t]
+        if known == 0:
+            roots[:, :count] = last[:, :count]
+        else:
+            for part in range(2):
+                for k in range(count):
+                    value = 0.0
+                    for h in range(known):
+                        value += weights[i, known - 1, h] * past[h, part, k]
+                    roots[part, k] = value
+        solved = _correct(roots, count, a, b, c, e) and _complete(roots, count, first, second)
+        if not solved:
+            found = _aberth(last, count, roots, a, b, c, e)
+            solved = (
+                found > 0 and _correct(roots, found, a, b, c, e) and _complete(roots, found, first, second)
+            )
+            known = 0
+            if solved and found != count:
+                count = found
+            if solved:
+                for k in range(2 * half):
+                    order[k] = k
+        if not solved:
+            state[i] = FLAGGED
+            continue
+        state[i] = SOLVED
+        last[:, :count] = roots[:, :count]
+        for h in range(min(known, HISTORY - 1), 0, -1):
+            past[h, :, :count] = past[h - 1, :, :count]
+        past[0, :, :count] = roots[:, :count]
+        known = min(known + 1, HISTORY)
+        _store(roots, count, order, out[i])
+
+
+@njit(**OPTIONS)
+def walk_rows(
+    rows: NDArray[np.int64],
+    basis: Array,
+    weights: Array,
+    a: Array,
+    b: Array,
+    numerators: Array,
+    sums: Array,
+    starts: Array,
+    counts: NDArray[np.int64],
+    out: NDArray[np.complex128],
+    state: NDArray[np.uint8],
+) -> None:
+    """Eigenvalues at all points of some lines.
+
+    Parameters
+    ----------
+    rows : (m,) the lines to do
+    basis : (points, terms) polynomials of the variable along the lines
+    weights : (points, HISTORY, HISTORY) weights [h - 1, :h] that predict a point from its h predecessors, last first
+    a, b : (n / 2,) of the nodes
+    numerators : (lines, 2, terms, n / 2) coefficients of c and e
+    sums : (lines, 2, terms) of the traces of A and A^2
+    starts, counts : (lines, 2, n) Re and Im of the roots with Im >= 0 near the first point, (lines,) their number
+    out : (lines, points, n) eigenvalues; undefined where flagged
+    state : (lines, points) SOLVED or FLAGGED
+    """
+    for row in rows:
+        _walk(
+            basis, weights, a, b, numerators[row], sums[row], starts[row], counts[row], out[row], state[row]
+        )
