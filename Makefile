@@ -5,7 +5,7 @@
 #   make lock    resolve the dependencies again (after a change in pyproject.toml)
 
 .DELETE_ON_ERROR:
-.PHONY: help run test lint types lock clean
+.PHONY: help run test system lint types lock clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -18,8 +18,12 @@ help:
 run: $(VENV)/.run
 	$(BIN)/rigctl run $(PROGRAM) $(RUN_ARGS)
 
-test: lint types
+test: system lint types
 	$(BIN)/python -m pytest -n 2 --dist worksteal
+
+# Says which Debian packages are missing for some of the tests; in CI installs them.
+system:
+	@sh .ci/system-packages
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
