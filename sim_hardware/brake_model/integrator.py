@@ -33,12 +33,12 @@ from sim_hardware.brake_model.modal import (
 from sim_hardware.brake_model.outputs import output_rows
 
 #: rate of the fine steps around slip reversals
-_FINE_HZ = 320_000.0
+FINE_HZ = 320_000.0
 #: a mode that decays by more than this in one step cannot be carried in the s form
 _FASTEST_DECAY = 1e-3
 #: modes below this size are set to zero between calls, so that a brake at rest does not compute with
 #: subnormal numbers
-_NEGLIGIBLE = 1e-100
+NEGLIGIBLE = 1e-100
 #: main steps without a reversal of slip before blocks of steps are tried again
 _PATIENCE = 64
 
@@ -93,7 +93,7 @@ class SquealIntegrator:
         self.output_hz = output_hz
         self.substeps = substeps
         self.outputs = brake.freedoms if outputs is None else tuple(outputs)
-        fine = max(1, math.ceil(_FINE_HZ / (output_hz * substeps))) if fine_steps is None else fine_steps
+        fine = max(1, math.ceil(FINE_HZ / (output_hz * substeps))) if fine_steps is None else fine_steps
         if fine < 1:
             raise ValueError(f"fine_steps is {fine!r}; give at least 1")
         self._system = modal_system(brake, brake.mu if mu_ref is None else mu_ref)
@@ -103,7 +103,7 @@ class SquealIntegrator:
                 raise ValueError(f"{len(weights)} weights for {len(self.outputs)} outputs; give one each")
             rows, direct = np.array([weights]) @ rows, np.array([weights]) @ direct
         self.n_columns = len(rows)
-        self._coefficients = _coefficients(
+        self._coefficients = discretise(
             brake, self._system, (rows, direct), 1.0 / (output_hz * substeps), substeps, fine
         )
         self.pads = tuple(group.pad for group in self._system.groups)
@@ -177,7 +177,7 @@ class SquealIntegrator:
                     f"the motion of brake '{self.brake.name}' is not finite; check its stability at "
                     f"mu = {mu}, pad force {normal_force_n} N, k = {k_s_m} s/m, or give saturation_m_s"
                 )
-            if size < _NEGLIGIBLE:
+            if size < NEGLIGIBLE:
                 self.reset()
         return out
 
@@ -270,7 +270,7 @@ def _memory(groups: int, modes: int) -> tuple[Array, contact.Memory]:
     return flat, contact.Memory(**parts)
 
 
-def _coefficients(
+def discretise(
     brake: Brake,
     system: ModalSystem,
     outputs: tuple[Array, Array],
@@ -278,6 +278,13 @@ def _coefficients(
     substeps: int,
     fine_steps: int,
 ) -> contact.Coefficients:
+    """Everything constant during a run with internal steps of `step_s`; `outputs` from `output_rows`.
+
+    Raises
+    ------
+    ValueError
+        internal rate too low for the brake
+    """
     form = multistep_form(system, step_s)
     if np.abs(form.rotation).min() < _FASTEST_DECAY:
         raise ValueError(

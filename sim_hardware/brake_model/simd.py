@@ -134,6 +134,26 @@ def negative_multiply_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 @intrinsic
+def subtract(typing_context: Any, a: Any, b: Any) -> Any:
+    """Return a - b by lanes."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fsub(args[0], args[1], flags=_FLAGS)
+
+    return a(a, b), code
+
+
+@intrinsic
+def divide(typing_context: Any, a: Any, b: Any) -> Any:
+    """Return a / b by lanes."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fdiv(args[0], args[1], flags=_FLAGS)
+
+    return a(a, b), code
+
+
+@intrinsic
 def over_root(typing_context: Any, a: Any, b: Any) -> Any:
     """Return a / sqrt(b) by lanes."""
 
@@ -168,14 +188,65 @@ def _broadcast(builder: Any, value: Any, lanes: int) -> Any:
     return builder.shuffle_vector(one, undefined, ir.Constant(ir.VectorType(_INDEX, lanes), None))
 
 
+def _splat(vector: VectorType) -> Any:
+    @intrinsic
+    def splat(typing_context: Any, value: Any) -> Any:
+        """Return a vector with the scalar `value` in all lanes."""
+
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            return _broadcast(builder, args[0], vector.lanes)
+
+        return vector(types.float64), code
+
+    return splat
+
+
+splat2, splat8 = _splat(vector2), _splat(vector8)
+
+
 @intrinsic
-def splat2(typing_context: Any, value: Any) -> Any:
-    """Return a vector of 2 with the scalar `value` in both lanes."""
+def coefficient8(typing_context: Any, table: Any, group: Any, index: Any) -> Any:
+    """Return a coefficient for eight lanes: from a (size,) table of all lanes, or from row `group` of a
+    (groups, 8 size) table, where each lane has its own."""
+    lanes = vector8.lanes
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return _broadcast(builder, args[0], 2)
+        at = context.cast(builder, args[2], signature.args[2], types.intp)
+        if signature.args[0].ndim == 1:
+            data = cgutils.create_struct_proxy(signature.args[0])(context, builder, args[0]).data
+            return _broadcast(builder, builder.load(builder.gep(data, [at])), lanes)
+        shape = cgutils.create_struct_proxy(signature.args[0])(context, builder, args[0]).shape
+        row = context.cast(builder, args[1], signature.args[1], types.intp)
+        begin = builder.mul(row, builder.extract_value(shape, 1))
+        first = builder.add(begin, builder.mul(at, ir.Constant(at.type, lanes)))
+        value = builder.load(_pointer(context, builder, signature.args[0], args[0], first, lanes))
+        value.align = 8
+        return value
 
-    return vector2(types.float64), code
+    return vector8(table, group, index), code
+
+
+@intrinsic
+def where_positive(typing_context: Any, condition: Any, a: Any, b: Any) -> Any:
+    """Return a in the lanes where `condition` > 0, b in the others."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        zero = ir.Constant(args[0].type, None)
+        return builder.select(builder.fcmp_ordered(">", args[0], zero), args[1], args[2])
+
+    return a(condition, a, b), code
+
+
+@intrinsic
+def positive_lanes(typing_context: Any, a: Any) -> Any:
+    """Return an integer with bit i set where lane i is > 0."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        positive = builder.fcmp_ordered(">", args[0], ir.Constant(args[0].type, None))
+        bits = builder.bitcast(positive, ir.IntType(signature.args[0].lanes))
+        return builder.zext(bits, ir.IntType(64))
+
+    return types.int64(a), code
 
 
 @intrinsic
