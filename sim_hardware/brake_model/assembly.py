@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_hardware.brake_model.laws import spring_force
 from sim_hardware.brake_model.lines import Lines, Structure
 from sim_hardware.brake_model.spec import BrakeSpec, Contact, Spring, load_spec
 
@@ -39,7 +40,9 @@ class Element:
     stiffness_n_m, damping_ns_m : values along (x, y)
     side : +1 or -1 at a contact (see `spec.Contact`), 0 otherwise
     load_share : part of the pad force at a contact, 0 otherwise
-    pad : name of the pad at a contact, "" otherwise
+    pad : name of the pad's body at a contact, "" otherwise
+    cubic_n_m3 : hardening c3 along (x, y): F = c u + c3 u^3 + d v (section 4.4)
+    one_sided : the contact cannot pull
     """
 
     name: str
@@ -50,16 +53,20 @@ class Element:
     side: int = 0
     load_share: float = 0.0
     pad: str = ""
+    cubic_n_m3: tuple[float, float] = (0.0, 0.0)
+    one_sided: bool = False
 
 
 @dataclass(frozen=True)
 class TorsionElement:
-    """Entry of table h (eq 17). `row`: (n_dof,) relative rotation per degree of freedom."""
+    """Entry of table h (eq 17). `row`: (n_dof,) relative rotation per degree of freedom; `cubic_nm_rad3`:
+    hardening."""
 
     name: str
     row: Array
     stiffness_nm_rad: float
     damping_nms_rad: float
+    cubic_nm_rad3: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +105,13 @@ class Brake:
         self.freedoms = self.structure.freedoms
         self._index = {name: i for i, name in enumerate(self.freedoms)}
         values = np.array([parameter.value for parameter in spec.parameters.values()])
-        self._lines = self.structure.lines(self.structure.formulas.values(values))
+        places = self.structure.formulas.values(values)
+        self._cubic = {
+            name: float(value)
+            for name, value in zip(self.structure.places, places, strict=True)
+            if name.rsplit(".", 1)[1].startswith("cubic")
+        }
+        self._lines = self.structure.lines(places)
         self.inertia = self._lines.inertia
         self.elements = tuple(self._element(i, coupling) for i, coupling in enumerate(spec.couplings))
         self.torsions = tuple(
@@ -107,6 +120,7 @@ class Brake:
                 self._lines.rows[i],
                 float(self._lines.stiffness[i]),
                 float(self._lines.damping[i]),
+                self._cubic.get(f"{torsion.name}.cubic", 0.0),
             )
             for i, torsion in enumerate(spec.torsions, start=2 * len(spec.couplings))
         )
@@ -151,6 +165,8 @@ class Brake:
     def _element(self, number: int, coupling: Spring | Contact) -> Element:
         lines, (x, y) = self._lines, (2 * number, 2 * number + 1)
         contact = isinstance(coupling, Contact)
+        keys = ("", "cubic") if contact else ("cubic_x", "cubic_y")
+        cubic_x, cubic_y = (self._cubic.get(f"{coupling.name}.{key}", 0.0) for key in keys)
         return Element(
             coupling.name,
             lines.rows[x],
@@ -160,54 +176,78 @@ class Brake:
             side=coupling.side if contact else 0,
             load_share=coupling.load_share if contact else 0.0,
             pad=coupling.between[0].split(".")[0] if contact else "",
+            cubic_n_m3=(cubic_x, cubic_y),
+            one_sided=contact and coupling.one_sided,
         )
 
     # -- forces: the loop over coupling elements
     # ---------------------------------------------------------------------
 
     def coupling_forces(
-        self, displacement: Array, velocity: Array, friction: ContactFriction
+        self,
+        displacement: Array,
+        velocity: Array,
+        friction: ContactFriction,
+        pad_force_n: float | None = None,
     ) -> tuple[Array, Array]:
-        """Forces and moments of all coupling elements, as they act on the second body.
+        """Forces and moments of all coupling elements by their laws, linear or not (eqs 8, 9), as they act on
+        the second body.
 
         Parameters
         ----------
         displacement, velocity : (n_dof,) m or rad, m/s or rad/s, from the steadily sliding state
         friction : deviation of each contact's friction force from its mean
+        pad_force_n : mean normal force of one pad; needed where a contact is one-sided
 
         Returns
         -------
-        forces : (n_elements, 2) N along x and y (eq 16)
-        moments : (n_torsions,) N m (eq 17)
+        forces : (n_elements, 2) N along x and y (eqs 8, 16)
+        moments : (n_torsions,) N m (eqs 9, 17)
+
+        Raises
+        ------
+        ValueError
+            a contact is one-sided and the pad force is not given
         """
         forces = np.zeros((len(self.elements), 2))
         contact = 0
         for index, element in enumerate(self.elements):
             dx, dy = element.row_x @ displacement, element.row_y @ displacement
             vx, vy = element.row_x @ velocity, element.row_y @ velocity
-            forces[index, 0] = element.stiffness_n_m[0] * dx + element.damping_ns_m[0] * vx  # eq 16
-            forces[index, 1] = element.stiffness_n_m[1] * dy + element.damping_ns_m[1] * vy  # eq 16
+            for axis, u, v in ((0, dx, vx), (1, dy, vy)):  # eqs 8, 16
+                spring = spring_force(element.stiffness_n_m[axis], element.cubic_n_m3[axis], u)
+                forces[index, axis] = spring + element.damping_ns_m[axis] * v
+            if element.one_sided:
+                if pad_force_n is None:
+                    raise ValueError(f"the contact '{element.name}' is one-sided: give pad_force_n")
+                pressed = max(element.side * forces[index, 1], -element.load_share * pad_force_n)
+                forces[index, 1] = element.side * pressed
             if element.side:
                 # -F acts on the pad, so friction towards +x on the pad enters with a minus
                 forces[index, 0] -= friction(contact, float(vx), float(element.side * forces[index, 1]))
                 contact += 1
         moments = np.array(
             [
-                torsion.stiffness_nm_rad * (torsion.row @ displacement)
-                + torsion.damping_nms_rad * (torsion.row @ velocity)
-                for torsion in self.torsions
+                spring_force(t.stiffness_nm_rad, t.cubic_nm_rad3, t.row @ displacement)
+                + t.damping_nms_rad * (t.row @ velocity)
+                for t in self.torsions
             ]
-        )  # eq 17
+        )  # eqs 9, 17
         return forces, moments
 
     def accelerations(
-        self, displacement: Array, velocity: Array, friction: ContactFriction, external: Array | None = None
+        self,
+        displacement: Array,
+        velocity: Array,
+        friction: ContactFriction,
+        external: Array | None = None,
+        pad_force_n: float | None = None,
     ) -> Array:
         """Accelerations (n_dof,) by Newton and Euler (eqs 2, 3) from the loop over couplings (eqs 6, 7).
 
-        `external`: (n_dof,) forces and moments on the bodies (N, N m).
+        `external`: (n_dof,) forces and moments on the bodies (N, N m); `pad_force_n` as in `coupling_forces`.
         """
-        forces, moments = self.coupling_forces(displacement, velocity, friction)
+        forces, moments = self.coupling_forces(displacement, velocity, friction, pad_force_n)
         total = np.zeros(self.n_dof) if external is None else external.astype(float)
         for element, force in zip(self.elements, forces, strict=True):
             total = total - element.row_x * force[0] - element.row_y * force[1]  # eqs 6, 7, 12, 13

@@ -37,6 +37,8 @@ UNITS: dict[str, Dimension] = {
     "N s/m": Dimension(1, 0, -1),
     "N m/rad": Dimension(1, 2, -2),
     "N m s/rad": Dimension(1, 2, -1),
+    "N/m3": Dimension(1, -2, -2),
+    "N m/rad3": Dimension(1, 2, -2),
     "s/m": Dimension(0, -1, 1),
 }
 

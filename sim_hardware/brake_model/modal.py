@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_hardware.brake_model.assembly import Array, Brake, Element
+from sim_hardware.brake_model.laws import require_linear
 
 Complex = NDArray[np.complex128]
 
@@ -102,8 +103,10 @@ def modal_system(brake: Brake, mu_ref: float) -> ModalSystem:
     Raises
     ------
     ValueError
-        the state matrix has no complete set of eigenvectors (a rigid-body motion, or exactly coupled modes)
+        a coupling has a cubic or one-sided law (`motion` integrates those), or the state matrix has no
+        complete set of eigenvectors (a rigid-body motion, or exactly coupled modes)
     """
+    require_linear(brake, "the fixed-rate integration in modes")
     n = brake.n_dof
     groups = friction_groups(brake)
     matrix = brake.state_matrix(mu_ref, 0.0, 0.0)

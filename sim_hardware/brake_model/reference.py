@@ -16,6 +16,7 @@ import numpy as np
 
 from sim_hardware.brake_model.assembly import Array, Brake
 from sim_hardware.brake_model.friction import ConstantFriction
+from sim_hardware.brake_model.laws import require_linear
 
 
 @dataclass(frozen=True)
@@ -30,10 +31,11 @@ class WorkingPoint:
 class ReferenceModel:
     """Right-hand side of the equations of motion at a working point, relative to the steadily sliding state.
 
-    `evaluations` counts calls of the right-hand side.
+    `evaluations` counts calls of the right-hand side. Linear couplings only; others raise ValueError.
     """
 
     def __init__(self, brake: Brake, point: WorkingPoint) -> None:
+        require_linear(brake, "the reference integrator")
         self.point = point
         self.inertia = brake.inertia
         self.evaluations = 0

@@ -27,6 +27,7 @@ Expression = Annotated[str, Field(min_length=1)]
 Freedom = Literal["x", "y", "phi"]
 
 _SHARE_TOLERANCE = 1e-9
+_CUBIC = ("cubic", "cubic_x", "cubic_y")
 #: names by which studies call the operating point
 _RESERVED = {"mu", "slope", "pressure", "piston_area"}
 _PLACES = "name a parameter or a place such as piston_l.stiffness_y, inner_pad.piston_l.x, disc.mass"
@@ -124,9 +125,11 @@ class Point(_Frozen):
 
 
 class Spring(_Frozen):
-    """Entry of table g: linear spring and damper along x and y between two points (eq 16).
+    """Entry of table g: spring and damper along x and y between two points (eq 16).
 
     `angle` turns the element's axes from x towards y (rad); without it they are those of the brake.
+    `cubic_x`, `cubic_y` (N/m3) harden the spring: F = c u + c3 u^3 (section 4.4), u counted from the steadily
+    sliding state, where c is the tangent.
     """
 
     kind: Literal["spring"]
@@ -136,6 +139,8 @@ class Spring(_Frozen):
     stiffness_y: Expression | None = None
     damping_x: Expression | None = None
     damping_y: Expression | None = None
+    cubic_x: Expression | None = None
+    cubic_y: Expression | None = None
     angle: Expression | None = None
 
     @model_validator(mode="after")
@@ -147,6 +152,14 @@ class Spring(_Frozen):
                 value=None,
                 remedy="give at least one of them, or remove the coupling",
             )
+        for axis in ("x", "y"):
+            if getattr(self, f"cubic_{axis}") is not None and getattr(self, f"stiffness_{axis}") is None:
+                raise refuse(
+                    f"coupling '{self.name}' has cubic_{axis} without stiffness_{axis}",
+                    place=f"cubic_{axis}",
+                    value=getattr(self, f"cubic_{axis}"),
+                    remedy=f"give stiffness_{axis} too: the cubic part hardens a spring, it is none itself",
+                )
         return self
 
 
@@ -155,7 +168,10 @@ class Contact(_Frozen):
     along x.
 
     `side` is +1 where +y presses the pad on the disc (inner pad), -1 where -y does (outer pad); `load_share`
-    is the part of the pad's normal force that this contact point carries.
+    is the part of the pad's normal force p A that this contact point carries. `pad` names the pad whose force
+    it shares, the first point's body where not given: the halves of a pad split into two bodies name one pad.
+    `cubic` (N/m3) hardens the normal spring as in `Spring`; `one_sided = true`: it cannot pull, the whole
+    normal force is max(0, load_share p A + variation).
     """
 
     kind: Literal["contact"]
@@ -165,15 +181,27 @@ class Contact(_Frozen):
     load_share: Annotated[float, Field(gt=0.0, le=1.0)]
     stiffness: Expression
     damping: Expression | None = None
+    cubic: Expression | None = None
+    one_sided: bool = False
+    pad: Name | None = None
+
+    @property
+    def pad_name(self) -> str:
+        """The pad whose normal force the contact shares."""
+        return self.pad if self.pad is not None else self.between[0].split(".")[0]
 
 
 class Torsion(_Frozen):
-    """Entry of table h: torsional spring and damper between two bodies (eq 17)."""
+    """Entry of table h: torsional spring and damper between two bodies (eq 17).
+
+    `cubic` (N m/rad3) hardens the spring: M = c phi + c3 phi^3.
+    """
 
     name: Name
     between: tuple[Name, Name]
     stiffness: Expression
     damping: Expression | None = None
+    cubic: Expression | None = None
 
 
 class Group(_Frozen):
@@ -287,11 +315,13 @@ class BrakeSpec(_Frozen):
             damping = {key: "N s/m" for key in ("damping", "damping_x", "damping_y")}
             yield from _given(place, "positive", stiffness, coupling)
             yield from _given(place, "not negative", damping, coupling)
+            yield from _given(place, "not negative", dict.fromkeys(_CUBIC, "N/m3"), coupling)
             yield from _given(place, None, {"angle": "rad"}, coupling)
         for torsion in self.torsions:
             place = f"torsions '{torsion.name}'"
             yield from _given(place, "positive", {"stiffness": "N m/rad"}, torsion)
             yield from _given(place, "not negative", {"damping": "N m s/rad"}, torsion)
+            yield from _given(place, "not negative", {"cubic": "N m/rad3"}, torsion)
 
     def _check_quantities(self) -> None:
         for name in sorted(set(self.parameters) & _RESERVED):
@@ -330,8 +360,7 @@ class BrakeSpec(_Frozen):
         shares: dict[str, float] = {}
         for coupling in self.couplings:
             if isinstance(coupling, Contact):
-                pad = coupling.between[0].split(".")[0]
-                shares[pad] = shares.get(pad, 0.0) + coupling.load_share
+                shares[coupling.pad_name] = shares.get(coupling.pad_name, 0.0) + coupling.load_share
         if not shares:
             raise refuse(
                 "the brake has no friction contact",
@@ -345,7 +374,8 @@ class BrakeSpec(_Frozen):
                     f"the contacts of '{pad}' carry {share:g} of the pad force instead of 1",
                     place="couplings: load_share",
                     value=share,
-                    remedy="a contact is missing or a load_share is wrong: those of a pad must add up to 1",
+                    remedy="a contact is missing or a load_share is wrong: those of a pad must add up to 1; "
+                    'contacts of several bodies that share one pad force (a split pad) name it: pad = "…"',
                 )
 
 
