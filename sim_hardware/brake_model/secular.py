@@ -322,9 +322,11 @@ def prediction_weights(points: Array) -> Array:
         past = points[index[:, None] - 1 - np.arange(used)]
         for k in range(used):
             others = np.delete(past, k, axis=1)
-            weights[used:, used - 1, k] = np.prod(
-                (points[index, None] - others) / (past[:, k, None] - others), axis=1
-            )
+            with np.errstate(divide="ignore", invalid="ignore"):
+                ratio = (points[index, None] - others) / (past[:, k, None] - others)
+            weights[used:, used - 1, k] = np.prod(ratio, axis=1)
+    repeated = ~np.isfinite(weights).all(axis=2)
+    weights[repeated] = np.eye(1, HISTORY)[0]  # points repeated: as the last one
     return weights
 
 

@@ -286,3 +286,67 @@ def walk_rows(
         _walk(
             basis, weights, a, b, numerators[row], sums[row], starts[row], counts[row], out[row], state[row]
         )
+
+
+@njit(**OPTIONS)
+def cross_rows(a: Array, b: Array, numerators: Array, low: Array, high: Array, found: Array) -> NDArray[np.bool_]:
+    """Crossings of the imaginary axis on some lines: Newton in (omega, u) on F(i omega; u) = 0.
+
+    Parameters
+    ----------
+    a, b, numerators : as in `walk_rows`; polynomials are Chebyshev's of u in -1 … 1
+    low, high : (lines,) ranges of u
+    found : (lines, 2) start (u, omega); the crossing on return. omega = 0: a real eigenvalue passes 0
+
+    Returns
+    -------
+    (lines,) whether Newton came to rest within the range
+    """
+    lines, terms = numerators.shape[0], numerators.shape[2]
+    good = np.zeros(lines, np.bool_)
+    value, rate = np.ones(terms), np.zeros(terms)
+    for line in range(lines):
+        u, omega = found[line, 0], found[line, 1]
+        real = omega == 0.0
+        for _ in range(30):
+            for t in range(1, terms):  # T_t and its derivative
+                if t == 1:
+                    value[1], rate[1] = u, 1.0
+                else:
+                    value[t] = 2.0 * u * value[t - 1] - value[t - 2]
+                    rate[t] = 2.0 * value[t - 1] + 2.0 * u * rate[t - 1] - rate[t - 2]
+            f_re, f_im, g_re, g_im, h_re, h_im = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            for j in range(a.size):
+                c, e, dc, de = 0.0, 0.0, 0.0, 0.0
+                for t in range(terms):
+                    c += value[t] * numerators[line, 0, t, j]
+                    e += value[t] * numerators[line, 1, t, j]
+                    dc += rate[t] * numerators[line, 0, t, j]
+                    de += rate[t] * numerators[line, 1, t, j]
+                q_re, q_im = b[j] - omega * omega, -a[j] * omega
+                inverse = 1.0 / (q_re * q_re + q_im * q_im)
+                t_re = (e * q_re + c * omega * q_im) * inverse
+                t_im = (c * omega * q_re - e * q_im) * inverse
+                f_re += t_re
+                f_im += t_im
+                h_re += (de * q_re + dc * omega * q_im) * inverse
+                h_im += (dc * omega * q_re - de * q_im) * inverse
+                u_re = c + t_re * a[j] + 2.0 * t_im * omega
+                u_im = t_im * a[j] - 2.0 * t_re * omega
+                g_re += (u_re * q_re + u_im * q_im) * inverse
+                g_im += (u_im * q_re - u_re * q_im) * inverse
+            if real:
+                step_u, step_omega = f_re / h_re, 0.0
+            else:  # dF/d omega = i F'
+                o_re, o_im = -g_im, g_re
+                determinant = h_re * o_im - h_im * o_re
+                step_u = (f_re * o_im - f_im * o_re) / determinant
+                step_omega = (h_re * f_im - h_im * f_re) / determinant
+            u -= step_u
+            omega -= step_omega
+            if abs(step_u) <= 1e-9 and abs(step_omega) <= 1e-9 * abs(omega):
+                slack = 1e-9 + 1e-3 * (high[line] - low[line])
+                good[line] = low[line] - slack <= u <= high[line] + slack
+                break
+        found[line, 0], found[line, 1] = u, omega
+    return good
