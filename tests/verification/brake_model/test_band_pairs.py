@@ -95,7 +95,7 @@ def test_mode_coupling_needs_friction(monkeypatch: pytest.MonkeyPatch) -> None:
     calm, rubbed = (by_shifts(of(parts, mu, bar=0.0), (1000.0, 2000.0), monkeypatch) for mu in (0.0, 0.6))
     assert not calm.unstable.any()
     assert rubbed.frequencies_hz[rubbed.unstable] == pytest.approx([1424.9], abs=0.01)
-    np.testing.assert_array_equal(calm.left, calm.right)  # symmetric matrices
+    assert np.abs(np.einsum("im,im->m", calm.left.conj(), calm.right)).min() > 1 - 1e-12  # symmetric: w = x
 
 
 def test_exactly_double_eigenvalues_are_found_twice(monkeypatch: pytest.MonkeyPatch) -> None:
