@@ -13,62 +13,32 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_hardware.brake_model.boundary_newton import (
+    BoundaryPoint,
+    crossing_between,
+    free_motions,
+    growing,
+    secular_crossings,
+    without_free,
+)
 from sim_hardware.brake_model.directions import Direction, direction
 from sim_hardware.brake_model.linear import LinearModel, Matrices, ParameterGroup
-from sim_hardware.brake_model.secular import (
-    GridEigenvalues,
-    Interval,
-    MatrixSurface,
-    SecularEquation,
-    grid_eigenvalues,
-    secular_equation,
-    sorted_eigenvalues,
-)
-from sim_hardware.brake_model.secular_kernels import cross_rows
+from sim_hardware.brake_model.secular import grid_eigenvalues, sorted_eigenvalues
 from sim_hardware.brake_model.variations import Variation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Moved = str | ParameterGroup | Variation | Direction
-Kind = Literal["flutter", "divergence"]
 
-#: real parts up to this share of the largest modulus are on the axis
-ON_AXIS = 1e-9
-#: eigenvalues below this share of the largest modulus are motions without any restoring force
-_FREE = 1e-6
 _STEPS = 128
 #: parts of a doubtful cell, and how often parts are divided again
 _PARTS, _DEPTH = 8, 3
-#: Newton's last step, relative: its square is rounding; width of a bracket that can only be halved
-_AT_REST, _NARROW = 1e-9, 1e-14
-_ITERATIONS = 100
 #: more degrees of freedom are a matter of bands
 LARGEST = 400
-
-
-@dataclass(frozen=True, slots=True)
-class BoundaryPoint:
-    """A crossing of the imaginary axis.
-
-    Attributes
-    ----------
-    value : of the quantity moved, or relative change of the group
-    frequency_hz : exact, 0 at divergence
-    kind : "flutter" (a pair crosses) or "divergence" (a real eigenvalue passes 0)
-    destabilises : whether stability is lost with rising distance from the start; else it is regained
-    rate_1_s : d Re(lambda) / d value there (eq 24); nan where eq 24 has no number (coinciding eigenvalues)
-    """
-
-    value: float
-    frequency_hz: float
-    kind: Kind
-    destabilises: bool
-    rate_1_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,18 +161,18 @@ def boundary_curve(
         return model.matrices(way.values(model, x, other.values(model, y, base)))
 
     solved = grid_eigenvalues(at, grid, along_values)
-    unstable = _growing(solved.values, _free(solved.values[:1, :1]))
+    unstable = growing(solved.values, free_motions(solved.values[:1, :1]))
     m = len(along_values)
     crossing, omega = np.full(m, np.nan), np.full(m, np.nan)
     changes = unstable[:, 1:] != unstable[:, :-1]
     rows = np.flatnonzero(changes.any(axis=1))
     cells = changes[rows].argmax(axis=1)
     done = np.zeros(m, dtype=bool)
-    if solved.method == "secular" and rows.size:
-        x, y = Interval(grid), Interval(along_values)
-        equation = secular_equation(MatrixSurface(at, x, y), x, y)
-        if equation is not None:
-            done[rows] = _newton(equation, solved, grid, along_values, rows, cells, crossing, omega)
+    if solved.equation is not None and rows.size:
+        near = solved.values[rows[:, None], np.stack([cells, cells + 1], axis=1)]
+        lines = solved.equation.along_x(along_values[rows])[0], solved.equation.x
+        ends = np.stack([grid[cells], grid[cells + 1]], axis=1)
+        crossing[rows], omega[rows], done[rows] = secular_crossings(solved.equation, lines, ends, near)
     for row in rows[~done[rows]]:
         exact = stability_boundary(model, way, low, high, other.values(model, float(along_values[row]), base))
         if exact.point is not None:
@@ -228,32 +198,6 @@ def check_size(model: LinearModel) -> None:
         )
 
 
-def _newton(
-    equation: SecularEquation,
-    solved: GridEigenvalues,
-    grid: Array,
-    along_values: Array,
-    rows: NDArray[np.intp],
-    cells: NDArray[np.intp],
-    crossing: Array,
-    omega: Array,
-) -> NDArray[np.bool_]:
-    """Crossings in the cells of some rows by the secular equation; which succeeded."""
-    near = solved.values[rows[:, None], np.stack([cells, cells + 1], axis=1)]  # (rows, 2, n)
-    leading = near.real.argmax(axis=2)
-    growth = np.take_along_axis(near.real, leading[:, :, None], axis=2)[:, :, 0]
-    share = growth[:, 0] / (growth[:, 0] - growth[:, 1])
-    outside = np.where(growth[:, 1] > 0.0, 1, 0)  # of the unstable end: there the right pair leads
-    start = np.abs(near[np.arange(len(rows)), outside, leading[np.arange(len(rows)), outside]].imag)
-    numerators, _ = equation.along_x(along_values[rows])
-    low, high = equation.x.scaled(grid[cells]), equation.x.scaled(grid[cells + 1])
-    found = np.stack([low + share * (high - low), start], axis=1)
-    good = cross_rows(equation.a, equation.b, numerators, np.minimum(low, high), np.maximum(low, high), found)
-    crossing[rows[good]] = equation.x.middle + equation.x.half * found[good, 0]
-    omega[rows[good]] = np.abs(found[good, 1])
-    return good
-
-
 class _Scan:
     """Growth rates over the range, and what is done with them."""
 
@@ -264,9 +208,9 @@ class _Scan:
         self._grid = np.linspace(low, high, steps + 1)
         first = self._at(low).state_matrix()
         self._values = grid_eigenvalues(lambda t, _: self._at(t), self._grid, np.zeros(1)).values[0]
-        self._free = _free(sorted_eigenvalues(np.linalg.eigvals(first))[None])
+        self._free = free_motions(sorted_eigenvalues(np.linalg.eigvals(first))[None])
         self.points = len(self._grid)
-        self.starts_unstable = bool(_growing(self._values[:1], self._free)[0])
+        self.starts_unstable = bool(growing(self._values[:1], self._free)[0])
 
     def _at(self, t: float) -> Matrices:
         return self._model.matrices(self._way.values(self._model, t, self._base))
@@ -276,7 +220,7 @@ class _Scan:
         return self._first(self._grid, self._values, _DEPTH)
 
     def _first(self, grid: Array, values: Complex, depth: int) -> tuple[float, float] | None:
-        unstable = _growing(values, self._free)
+        unstable = growing(values, self._free)
         changes = unstable[1:] != unstable[:-1]
         doubtful = _doubtful(values, self._free) if depth and not self.starts_unstable else np.zeros_like(changes)
         for i in np.flatnonzero(changes | doubtful):
@@ -293,80 +237,12 @@ class _Scan:
         return None
 
     def refine(self, before: float, after: float) -> tuple[BoundaryPoint, int]:
-        """The crossing between two values, by Newton with eq 24 within the bracket, else by halving it."""
-        began = self.starts_unstable
-        span, cell = max(abs(before), abs(after)), abs(after - before)
-        t, iteration = after, 0
-        leading, rate = 0j, complex("nan")
-        while iteration < _ITERATIONS:
-            iteration += 1
-            leading, rate, axis = self._leading(t)
-            if (leading.real > axis) == began:
-                before = t
-            else:
-                after = t
-            # a derivative that moves nothing over the cell is rounding: undamped, or coinciding eigenvalues
-            step = leading.real / rate.real if abs(rate.real) * cell > axis else math.nan
-            if abs(step) <= _AT_REST * span:
-                t -= step
-                break
-            if abs(after - before) <= _NARROW * span:
-                break
-            inside = min(before, after) < t - step < max(before, after)
-            on_axis = abs(leading.real) <= axis and abs(step) < 0.1 * cell
-            t = t - step if inside or on_axis else 0.5 * (before + after)
-        flutter = abs(leading.imag) > ON_AXIS * abs(leading) and leading.imag != 0.0
-        return (
-            BoundaryPoint(
-                t, abs(leading.imag) / (2.0 * math.pi) if flutter else 0.0, "flutter" if flutter else "divergence",
-                not began, rate.real,
-            ),
-            iteration,
-        )  # fmt: skip
+        """The crossing between two values."""
 
-    def _leading(self, t: float) -> tuple[complex, complex, float]:
-        """Eigenvalue of the largest real part, its derivative (eq 24), and up to where real parts count as 0."""
-        matrices = self._at(t).dense()
-        values = sorted_eigenvalues(np.linalg.eigvals(matrices.state_matrix()))[None]
-        kept = _without_free(values, self._free)[0]
-        leading = complex(kept[int(kept.real.argmax())])
-        rate = eigenvalue_rate(matrices, self._way.derivative(self._model, t, self._base), leading)
-        return leading, rate, ON_AXIS * float(np.abs(values).max())
+        def at(t: float) -> tuple[Matrices, Matrices]:
+            return self._at(t).dense(), self._way.derivative(self._model, t, self._base)
 
-
-def eigenvalue_rate(matrices: Matrices, change: Matrices, value: complex) -> complex:
-    """Derivative of one eigenvalue (eq 24, written for the pencil; see `sensitivity`), nan where it has none.
-
-    Parameters
-    ----------
-    matrices, change : M, D, K and their derivatives, dense
-    value : the eigenvalue, 1/s
-    """
-    left, size, right = np.linalg.svd(value**2 * matrices.mass + value * matrices.damping + matrices.stiffness)
-    if len(size) > 1 and size[-1] > 1e-3 * size[-2]:
-        return complex("nan")  # no single null vector: eigenvalues coincide
-    w, v = left[:, -1].conj(), right[-1].conj()
-    across = w @ (2.0 * value * matrices.mass + matrices.damping) @ v
-    if abs(across) == 0.0:
-        return complex("nan")
-    return complex(-(w @ (value**2 * change.mass + value * change.damping + change.stiffness) @ v) / across)  # eq 24
-
-
-def _free(values: Complex) -> int:
-    """Number of eigenvalues that are zero but for rounding, everywhere."""
-    size = np.abs(values)
-    return int((size <= _FREE * size.max(axis=-1, keepdims=True)).sum(axis=-1).min())
-
-
-def _without_free(values: Complex, free: int) -> Complex:
-    if not free:
-        return values
-    return np.take_along_axis(values, np.argsort(np.abs(values), axis=-1)[..., free:], axis=-1)
-
-
-def _growing(values: Complex, free: int) -> NDArray[np.bool_]:
-    """Whether an eigenvalue (..., n) has a positive real part, beyond rounding."""
-    return _without_free(values, free).real.max(axis=-1) > ON_AXIS * np.abs(values).max(axis=-1)
+        return crossing_between(at, before, after, free=self._free, began_unstable=self.starts_unstable)
 
 
 def _doubtful(values: Complex, free: int) -> NDArray[np.bool_]:
@@ -375,7 +251,7 @@ def _doubtful(values: Complex, free: int) -> NDArray[np.bool_]:
     A real part could rise by as much as it and its neighbours change nearby; and where two eigenvalues are closer
     than they move, they may couple in between.
     """
-    kept = _without_free(values, free)
+    kept = without_free(values, free)
     upper = kept[:, kept[0].imag >= 0.0] if (np.sum(kept.imag >= 0, axis=1) == np.sum(kept[0].imag >= 0)).all() else kept
     moved = np.abs(np.diff(upper, axis=0))
     stable = upper.real < 0.0

@@ -59,12 +59,14 @@ class GridEigenvalues:
     method : "secular", or "lapack" where that pays or must be
     reason : why, in words
     fallback : (ny, nx) points that the guards left to LAPACK
+    equation : the secular equation, None by LAPACK
     """
 
     values: Complex
     method: Method
     reason: str
     fallback: NDArray[np.bool_]
+    equation: SecularEquation | None = None
 
     @property
     def fallback_share(self) -> float:
@@ -271,7 +273,7 @@ def _by_secular(
         rows(others)
     flagged = state == FLAGGED
     _by_lapack(matrices, xs, ys, flagged, values)
-    return GridEigenvalues(values, "secular", "the faster one", flagged)
+    return GridEigenvalues(values, "secular", "the faster one", flagged, equation)
 
 
 def _first_column(

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.boundary import boundary_curve, eigenvalue_rate, stability_boundary
+from sim_hardware.brake_model.boundary import boundary_curve, stability_boundary
+from sim_hardware.brake_model.boundary_newton import eigenvalue_rate
 from sim_hardware.brake_model.directions import direction
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, known
 from sim_hardware.brake_model.parametric import LinearBrake
