@@ -41,8 +41,10 @@ class EigenPairs:
     right, left : (n_dof, m) x and w, norm 1, T x = 0 and w^T T = 0 with T = lambda^2 M + lambda D + K;
         w^T (2 lambda M + D) x is real and not negative (eq 24: dlambda = - w^T dT x / w^T (2 lambda M + D) x)
     residuals : (m,) |T x| / ((|lambda|^2 |M| + |lambda| |D| + |K|) |x|), the backward error
-    conditions : (m,) relative change of lambda per relative change of the matrices; large: nearly defective,
-        the vectors and everything made of them are not to be trusted
+    conditions : (m,) relative change of lambda per relative change of the matrices (in their Frobenius norms)
+    alignments : (m,) |w^T (2 lambda M + D) x| / (2 |lambda| sqrt(x* M x  w* M w)), at most 1: 1 for undamped
+        symmetric models, 0 for a defective pair; small: the vectors and everything made of them are not to be
+        trusted
     errors_1_s : (m,) first-order bound of the error of lambda, from residual and condition
     method : "dense" or "shift-invert"
     band_hz : the band asked for, None for all
@@ -57,6 +59,7 @@ class EigenPairs:
     left: Complex
     residuals: Array
     conditions: Array
+    alignments: Array
     errors_1_s: Array
     method: str
     band_hz: tuple[float, float] | None
@@ -202,8 +205,11 @@ def _result(
         spread = sizes / np.maximum(np.abs(slopes), tiny * sizes)
         conditions = spread / np.maximum(np.abs(values), tiny * spread)
     residuals = pencil.residuals(values, right)
+    momenta = (np.abs(np.einsum("im,im->m", v.conj(), pencil.mass @ v)) for v in (right, left))
+    kinetic = 2.0 * np.abs(values) * np.sqrt(np.prod(list(momenta), axis=0))
+    alignments = np.minimum(np.abs(slopes) / np.maximum(kinetic, tiny), 1.0)
     return EigenPairs(
-        values, right, left, residuals, conditions, np.maximum(residuals, _EPSILON) * spread,
+        values, right, left, residuals, conditions, alignments, np.maximum(residuals, _EPSILON) * spread,
         method, band, width, complete, evidence,
     )  # fmt: skip
 

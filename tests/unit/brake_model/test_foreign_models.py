@@ -180,7 +180,7 @@ def test_values_are_checked() -> None:
     model = small()
     with pytest.raises(KeyError, match=r"did you mean.*pressure"):
         model.matrices({"presure": 1.0})
-    with pytest.raises(KeyError, match="part.K_mu"):
+    with pytest.raises(KeyError, match=r"part.K_mu"):
         model.derivative("part.K_nu")
     for values, message in (
         ({"mu": np.nan}, "mu = nan"),
