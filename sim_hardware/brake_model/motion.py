@@ -170,6 +170,19 @@ class Motion:
     rejected: int
     coupling_forces: CouplingForces | None = field(default=None)
 
+    def sticking_s(self, group: int) -> Array:
+        """(m, 2) begin and end of each time in which a friction group sticks, from the events."""
+        begins = [float(self.times_s[0])] if self.sliding[0, group] == 0 else []
+        ends: list[float] = []
+        for event in self.events:
+            if event.where == self.groups[group]:
+                if event.kind == "sticks":
+                    begins.append(event.time_s)
+                elif event.kind == "releases" and len(ends) < len(begins):
+                    ends.append(event.time_s)
+        ends += [float(self.times_s[-1])] * (len(begins) - len(ends))
+        return np.array([begins, ends]).T
+
 
 def integrate(
     brake: Brake,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_hardware.brake_model.assembly import Array, Brake
-from sim_hardware.brake_model.friction import ConstantFriction
+from sim_hardware.brake_model.friction import FrictionLaw
 from sim_hardware.brake_model.laws import require_linear
 
 
@@ -25,7 +25,7 @@ class WorkingPoint:
 
     pad_force_n: float
     slip_m_s: float
-    law: ConstantFriction
+    law: FrictionLaw
 
 
 class ReferenceModel:
