@@ -18,14 +18,14 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rigctl.core.errors import ConfigError, RunError
-from rigctl.model.runner_checkpoint import Checkpoint, digest, identity
+from rigctl.model.runner_checkpoint import MANIFEST, RESULTS, Checkpoint, digest, identity
 from rigctl.model.runner_executors import Answer, Chunk, DaskCluster, Executor, InProcess, Job, WorkerPool
 from rigctl.model.runner_work import code_identity, resolve
 
@@ -191,7 +191,7 @@ class _Run:
                 under_way += 1
             for answer in executor.collect():
                 under_way -= 1
-                self._keep(answer)
+                self._keep(answer, executor.elsewhere)
             self.tell()
 
     def _next(self, slots: int) -> Chunk:
@@ -200,7 +200,7 @@ class _Run:
         places = tuple(self.pending.popleft() for _ in range(size))
         return Chunk(places, json.dumps([self.tasks[place] for place in places], allow_nan=False))
 
-    def _keep(self, answer: Answer) -> None:
+    def _keep(self, answer: Answer, elsewhere: bool) -> None:
         content = answer.content
         if "error" in content:
             place = answer.places[content["task"]]
@@ -209,11 +209,11 @@ class _Run:
                 place="study",
                 value=self.tasks[place],
             ) from RuntimeError(content["trace"])
-        if content["code"] != self._code:
+        if elsewhere and content["code"] != self._code:
             raise RunError(
                 "the code of a worker is not that of this process.",
                 place="study",
-                remedy="Install the same version for all workers, and change no file while a study runs.",
+                remedy="Install the same version of rigctl for all workers and start them again.",
             )
         if self.checkpoint is None:
             self.results.update(zip(answer.places, content["results"], strict=True))
@@ -231,3 +231,44 @@ class _Run:
         fresh, left = done - self.restored, len(self.tasks) - done
         left_s = elapsed / fresh * left if fresh else (0.0 if left == 0 else None)
         self._on_progress(Progress(done, len(self.tasks), self.restored, elapsed, left_s))
+
+
+@dataclass(slots=True)
+class RunOptions:
+    """How a study's tasks are computed; see `run_study`.
+
+    Attributes
+    ----------
+    cached : without `folder`, keep finished tasks in the user's cache (`default_folder`) until `forget`
+    """
+
+    folder: Path | None = None
+    workers: int = 1
+    scheduler: str | None = None
+    on_progress: Callable[[Progress], None] | None = None
+    cached: bool = False
+    _used: list[Path] = field(default_factory=list, repr=False)
+
+    def run(self, tasks: Sequence[Mapping[str, Any]], function: str, setting: Mapping[str, Any]) -> list[Any]:
+        """`run_study` with these options."""
+        folder = self.folder
+        if folder is None and self.cached:
+            folder = default_folder(tasks, function, setting)
+            self._used.append(folder)
+        return run_study(
+            tasks,
+            function,
+            setting=setting,
+            folder=folder,
+            workers=self.workers,
+            scheduler=self.scheduler,
+            on_progress=self.on_progress,
+        )
+
+    def forget(self) -> None:
+        """Remove what was kept in the cache; call it when the study's results are written."""
+        for folder in self._used:
+            for name in (RESULTS, MANIFEST):
+                (folder / name).unlink(missing_ok=True)
+            folder.rmdir()
+        self._used.clear()

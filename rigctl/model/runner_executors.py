@@ -54,9 +54,16 @@ class Answer:
 
 
 class Executor(ABC):
-    """Context manager that computes chunks. `slots`: chunks that may be under way at once."""
+    """Context manager that computes chunks.
+
+    Attributes
+    ----------
+    slots : chunks that may be under way at once
+    elsewhere : workers have an installation of their own, whose code is to be checked
+    """
 
     slots: int = 1
+    elsewhere: bool = False
 
     @abstractmethod
     def submit(self, chunk: Chunk) -> None:
@@ -204,6 +211,8 @@ class DaskCluster(Executor):
     ConfigError
         the package distributed is missing, or nobody answers at the address
     """
+
+    elsewhere = True
 
     def __init__(self, job: Job, address: str) -> None:
         try:

@@ -157,16 +157,29 @@ def updated_text(text: str, brake: Brake, factors: Mapping[str, float], origin: 
     """
     for name in factors:
         parameter = brake.spec.parameters[name]
-        unit, source = json.dumps(parameter.unit), json.dumps(origin)
-        line = f"{name} = {{ value = {parameter.value!r}, unit = {unit}, origin = {source} }}"
-        text, count = re.subn(
-            rf"(?m)^{re.escape(name)}[ \t]*=[ \t]*\{{.*\}}[ \t]*$", lambda _, line=line: line, text
-        )
-        if count != 1:
-            raise ValueError(
-                f"parameter {name!r} stands {count} times as '{name} = {{ ... }}'; write it once on one line"
-            )
+        text = replaced_parameter(text, name, parameter.unit, parameter.value, origin)
     return text
+
+
+def replaced_parameter(text: str, name: str, unit: str, value: float, origin: str) -> str:
+    """Return a brake file's text with another value and origin of one parameter or operating value.
+
+    Comments, order and everything else stay as they are.
+
+    Raises
+    ------
+    ValueError
+        the parameter does not stand on a line of its own as `name = { ... }`
+    """
+    line = re.compile(rf"(?m)^({re.escape(name)}[ \t]*=[ \t]*)\{{[^{{}}\n]*\}}([ \t]*(?:#.*)?)$")
+    source = json.dumps(origin, ensure_ascii=False)
+    entry = f"{{ value = {value!r}, unit = {json.dumps(unit)}, origin = {source} }}"
+    changed, count = line.subn(lambda found: f"{found[1]}{entry}{found[2]}", text)
+    if count != 1:
+        raise ValueError(
+            f"parameter {name!r} stands {count} times as '{name} = {{ ... }}'; write it once on one line"
+        )
+    return changed
 
 
 def _shown(onset: Onset | None, targets: Mapping[str, float]) -> str:
