@@ -70,6 +70,7 @@ class BoundaryCurve:
     Attributes
     ----------
     moved, along : what is searched over, and what the curve runs along
+    low, high : range of `moved`, searched from `low`
     along_values : (m,)
     values : (m,) first crossing, nan where there is none in the range
     frequencies_hz : (m,) 0 at divergence, nan without crossing
@@ -81,6 +82,8 @@ class BoundaryCurve:
 
     moved: Direction
     along: Direction
+    low: float
+    high: float
     along_values: Array
     values: Array
     frequencies_hz: Array
@@ -178,7 +181,7 @@ def boundary_curve(
         if exact.point is not None:
             crossing[row], omega[row] = exact.point.value, exact.point.frequency_hz * 2.0 * math.pi
     return BoundaryCurve(
-        way, other, along_values, crossing, omega / (2.0 * math.pi), ~unstable[:, 0] & np.isfinite(crossing),
+        way, other, low, high, along_values, crossing, omega / (2.0 * math.pi), ~unstable[:, 0] & np.isfinite(crossing),
         unstable[:, 0], done, solved.fallback_share,
     )  # fmt: skip
 
@@ -273,3 +276,16 @@ def _check_range(low: float, high: float, steps: int) -> None:
         raise ValueError(f"range from {low!r} to {high!r}: give two different finite numbers")
     if steps < 1:
         raise ValueError(f"steps is {steps!r}; give at least 1")
+
+
+def growth_along(
+    model: LinearModel, moved: Moved, numbers: Array, values: Mapping[str, float] | None = None
+) -> Array:
+    """Largest real part (m,), 1/s, at numbers (m,) of what is moved. Errors as `stability_boundary`."""
+    way = direction(model, moved)
+    check_size(model)
+    base = dict(values or {})
+    solved = grid_eigenvalues(
+        lambda t, _: model.matrices(way.values(model, t, base)), np.asarray(numbers, dtype=float), np.zeros(1)
+    )
+    return without_free(solved.values[0], free_motions(solved.values[0][::50])).real.max(axis=-1)

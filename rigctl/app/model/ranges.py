@@ -7,6 +7,7 @@ which quantities a model has (the model says so when it is asked).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,16 +43,11 @@ def parse_range(text: str, place: str = "range") -> tuple[str, NDArray[np.float6
     def refuse(problem: str) -> ConfigError:
         return ConfigError(problem, place=place, value=text, remedy=_EXAMPLE)
 
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) != 4 or not parts[0]:
+    parts = [part.strip() for part in text.rsplit(":", 3)]  # names of variations have a colon of their own
+    if len(parts) != 4 or not _is_name(parts[0]):
         raise refuse(f"is not {RANGE_METAVAR}.")
     name = parts[0]
-    try:
-        first, last = float(parts[1]), float(parts[2])
-    except ValueError:
-        raise refuse("FROM and TO must be numbers.") from None
-    if not (math.isfinite(first) and math.isfinite(last)):
-        raise refuse("FROM and TO must be finite numbers.")
+    first, last = _ends(parts[1], parts[2], refuse)
     try:
         count = int(parts[3])
     except ValueError:
@@ -63,3 +59,47 @@ def parse_range(text: str, place: str = "range") -> tuple[str, NDArray[np.float6
     if count > 1 and first == last:
         raise refuse("FROM and TO are equal: a range needs an extent.")
     return name, np.linspace(first, last, count)
+
+
+def parse_search(text: str, place: str = "range") -> tuple[str, tuple[float, float] | None]:
+    """Name and range of "mu:0:1", or the name alone and None.
+
+    Raises
+    ------
+    ConfigError
+        not NAME or NAME:FROM:TO
+    """
+
+    def refuse(problem: str) -> ConfigError:
+        return ConfigError(problem, place=place, value=text, remedy="For example mu:0:1, or pressure.")
+
+    parts = [part.strip() for part in text.rsplit(":", 2)]
+    if len(parts) == 3 and _is_number(parts[1]) and _is_number(parts[2]) and _is_name(parts[0]):
+        first, last = _ends(parts[1], parts[2], refuse)
+        if first == last:
+            raise refuse("FROM and TO are equal: a range needs an extent.")
+        return parts[0], (first, last)
+    if not _is_name(text):
+        raise refuse("is not NAME or NAME:FROM:TO.")
+    return text.strip(), None
+
+
+def _is_name(text: str) -> bool:
+    return all(part.strip() and not _is_number(part) for part in text.split(":"))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _ends(first: str, last: str, refuse: Callable[[str], ConfigError]) -> tuple[float, float]:
+    if not (_is_number(first) and _is_number(last)):
+        raise refuse("FROM and TO must be numbers.")
+    ends = float(first), float(last)
+    if not (math.isfinite(ends[0]) and math.isfinite(ends[1])):
+        raise refuse("FROM and TO must be finite numbers.")
+    return ends

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rigctl.app.model.ranges import parse_range
+from rigctl.app.model.ranges import parse_range, parse_search
 from rigctl.core.errors import ConfigError
 
 numbers = st.floats(-1e12, 1e12, allow_nan=False)
@@ -41,6 +41,7 @@ def test_a_single_value() -> None:
         ("mu:0:1", "NAME:FROM:TO:COUNT"),
         (":0:1:5", "NAME:FROM:TO:COUNT"),
         ("mu:0:1:5:7", "NAME:FROM:TO:COUNT"),
+        ("mu:0:1:", "whole number"),
         ("mu:a:1:5", "must be numbers"),
         ("mu:0:inf:5", "finite"),
         ("mu:nan:1:5", "finite"),
@@ -59,3 +60,24 @@ def test_what_is_no_range_is_refused_with_an_example(text: str, problem: str) ->
     assert problem in message
     assert "--x" in message
     assert "mu:0:1:128" in message
+
+
+def test_names_of_variations_keep_their_colon() -> None:
+    name, values = parse_range("piston_position:clockwise:-0.2:0.2:3")
+    assert name == "piston_position:clockwise"
+    assert values.tolist() == [-0.2, 0.0, 0.2]
+    assert parse_search("piston_position:clockwise:0:0.5") == ("piston_position:clockwise", (0.0, 0.5))
+    assert parse_search("piston_position:clockwise") == ("piston_position:clockwise", None)
+
+
+def test_a_search_has_a_range_or_not() -> None:
+    assert parse_search(" pressure ") == ("pressure", None)
+    assert parse_search("mu:1:0") == ("mu", (1.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "mu:1", "mu:0:1:5:", ":0:1", "mu:0:inf", "mu:1:1", "mu:", "0:1", "mu:0:1:2"]
+)  # fmt: skip
+def test_what_is_no_search_is_refused(text: str) -> None:
+    with pytest.raises(ConfigError, match="mu:0:1"):
+        parse_search(text, "--over")
