@@ -56,7 +56,8 @@ class BatchIntegrator:
     brakes : the brake of all lanes, or one brake per lane, all with the same bodies, couplings and pads
     lanes : number of brakings; may be omitted with a brake per lane
     mu_ref : friction of the linear part, one for all; each brake's own where None
-    output_hz, substeps, outputs, weights, fine_steps : as `SquealIntegrator`
+    output_hz, substeps, outputs, fine_steps : as `SquealIntegrator`
+    weights : (outputs,) return their weighted sum as the only column; (columns, outputs) that many sums
 
     Attributes
     ----------
@@ -85,7 +86,7 @@ class BatchIntegrator:
         output_hz: float = 40_000.0,
         substeps: int = 1,
         outputs: Sequence[str] | None = None,
-        weights: Sequence[float] | None = None,
+        weights: ArrayLike | None = None,
         fine_steps: int | None = None,
     ) -> None:
         own = not isinstance(brakes, Brake)
@@ -105,18 +106,19 @@ class BatchIntegrator:
         self.output_hz, self.substeps, self._fine_steps = output_hz, substeps, fine
         first = self.brakes[0]
         self.outputs = first.freedoms if outputs is None else tuple(outputs)
-        if weights is not None and len(weights) != len(self.outputs):
-            raise ValueError(f"{len(weights)} weights for {len(self.outputs)} outputs; give one each")
-        self.n_columns = len(self.outputs) if weights is None else 1
+        sums = (
+            np.eye(len(self.outputs)) if weights is None else np.atleast_2d(np.asarray(weights, dtype=float))
+        )
+        if sums.ndim != 2 or sums.shape[1] != len(self.outputs):
+            raise ValueError(f"weights of shape {sums.shape} for {len(self.outputs)} outputs; give one each")
+        self.n_columns = len(sums)
         self._systems = [modal_system(brake, brake.mu if mu_ref is None else mu_ref) for brake in self.brakes]
         self.pads = tuple(group.pad for group in self._systems[0].groups)
         self.n_pads = len(self.pads)
         self._check_structure()
         self._modes = max(len(system.eigenvalues) for system in self._systems)
         self._history_rows: list[Complex] = []
-        tables = np.stack(
-            [self._table(*pair, weights) for pair in zip(self.brakes, self._systems, strict=True)]
-        )
+        tables = np.stack([self._table(*pair, sums) for pair in zip(self.brakes, self._systems, strict=True)])
         self._tiles = self._make_tiles(tables, _TILE_OWN if own else _TILE_SHARED)
         self._groups = sum(len(tile.state) for tile in self._tiles)
         self._work = layout.aligned(
@@ -142,10 +144,8 @@ class BatchIntegrator:
                     "put brakes of one structure into a batch"
                 )
 
-    def _table(self, brake: Brake, system: ModalSystem, weights: Sequence[float] | None) -> Array:
-        rows, direct = output_rows(brake, system, self.outputs)
-        if weights is not None:
-            rows, direct = np.array([weights]) @ rows, np.array([weights]) @ direct
+    def _table(self, brake: Brake, system: ModalSystem, sums: Array) -> Array:
+        rows, direct = (sums @ part for part in output_rows(brake, system, self.outputs))
         step_s = 1.0 / (self.output_hz * self.substeps)
         c = discretise(brake, system, (rows, direct), step_s, self.substeps, self._fine_steps)
         history = c.modal[c.history : c.history + contact.DEPTH * self.n_pads, :, : self._modes]
@@ -194,6 +194,7 @@ class BatchIntegrator:
         k_s_m: PerLane = 0.0,
         saturation_m_s: ArrayLike | None = None,
         excitation_n: ArrayLike | None = None,
+        columns: int | None = None,
     ) -> Array:
         """Integrate `n_out` output intervals of all lanes and return the outputs at the start of each.
 
@@ -204,6 +205,7 @@ class BatchIntegrator:
             all lanes or (lanes,), or a tuple (start, end) of those
         saturation_m_s : one for all or (lanes,); None or infinite: linear law (eq 28)
         excitation_n : (n_out, n_pads) for all lanes or (n_out, lanes, n_pads), N
+        columns : compute the first columns only; each takes about a tenth of the time
 
         Returns
         -------
@@ -216,7 +218,7 @@ class BatchIntegrator:
         """
         self._set_operation(n_out, (normal_force_n, mu, slip_m_s, k_s_m), saturation_m_s)
         excitation = self._excitation(n_out, excitation_n)
-        out = layout.aligned((n_out, self.n_columns, self._groups, layout.LANES))
+        out = layout.aligned((n_out, self._columns(columns), self._groups, layout.LANES))
         if n_out:
             self._run(excitation, out, 0)
             self._tidy()
@@ -233,6 +235,7 @@ class BatchIntegrator:
         k_s_m: PerLane = 0.0,
         saturation_m_s: ArrayLike | None = None,
         excitation_n: ArrayLike | None = None,
+        columns: int | None = None,
     ) -> Statistics:
         """As `advance`, but return only mean, rms, extremes and frequency of the outputs over the call.
 
@@ -242,8 +245,9 @@ class BatchIntegrator:
         given = None if excitation_n is None else np.asarray(excitation_n, dtype=float)
         if given is not None and len(given) != n_out:
             raise ValueError(f"excitation_n has {len(given)} rows; give {n_out}")
-        statistics = StatisticsOf(self.n_columns, self._groups * layout.LANES)
-        out = layout.aligned((min(_PIECE, n_out), self.n_columns, self._groups, layout.LANES))
+        shown = self._columns(columns)
+        statistics = StatisticsOf(shown, self._groups * layout.LANES)
+        out = layout.aligned((min(_PIECE, n_out), shown, self._groups, layout.LANES))
         for first in range(0, n_out, _PIECE):
             piece = out[: min(_PIECE, n_out - first)]
             excitation = None if given is None else given[first : first + len(piece)]
@@ -254,12 +258,17 @@ class BatchIntegrator:
         self._tidy()
         return statistics.result(self.output_hz, self.lanes, self.lost)
 
+    def _columns(self, wanted: int | None) -> int:
+        if wanted is not None and not 0 <= wanted <= self.n_columns:
+            raise ValueError(f"columns is {wanted!r}; there are {self.n_columns}")
+        return self.n_columns if wanted is None else wanted
+
     def _run(self, excitation: Array, out: Array, begin: int) -> None:
         if self._fresh.any():
             self._start_fresh_lanes()
         for tile in self._tiles:
             batch_kernels.advance_lanes(
-                tile.table, self._modes, self.n_columns, self.substeps, self._fine_steps,
+                tile.table, self._modes, out.shape[1], self.substeps, self._fine_steps,
                 bool(tile.operation[:, layout.SATURATION_ROW].any()), tile.state, tile.operation,
                 excitation, len(excitation) > 0, self._work, out, tile.first_group, begin,
             )  # fmt: skip
@@ -325,9 +334,7 @@ class BatchIntegrator:
         )
 
     def _by_lanes(self, out: Array) -> Array:
-        return out.reshape(len(out), self.n_columns, self._groups * layout.LANES)[
-            :, :, : self.lanes
-        ].transpose(0, 2, 1)
+        return out.reshape(*out.shape[:2], self._groups * layout.LANES)[:, :, : self.lanes].transpose(0, 2, 1)
 
     # -- state
     # -----------------------------------------------------------------------------------------------------
