@@ -183,7 +183,9 @@ def _facts(
         "sticking_share": {name: _sticking(motion, g) for g, name in enumerate(motion.groups)},
         "events": {f"{where} {kind}": count for (where, kind), count in sorted(counts.items())},
         "integration_steps": motion.steps,
-        "energy_balance_error": float(np.abs(energies.error).max()) / scale if scale > 0.0 else 0.0,
+        "energy_balance_error_at_output_rate": float(np.abs(energies.error).max()) / scale
+        if scale > 0.0
+        else 0.0,
     }
 
 

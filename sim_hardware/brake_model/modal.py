@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from sim_hardware.brake_model.assembly import Array, Brake, Element
 from sim_hardware.brake_model.laws import require_linear
+from sim_hardware.brake_model.rigid_body import freely_moving
 
 Complex = NDArray[np.complex128]
 
@@ -125,10 +126,16 @@ def modal_system(brake: Brake, mu_ref: float) -> ModalSystem:
     # displacements and velocities differ by the frequency: judge the condition on balanced vectors
     balance = np.concatenate([np.full(n, np.abs(values).max()), np.ones(n)])
     condition = np.linalg.cond(balance[:, None] * scaled / np.linalg.norm(balance[:, None] * scaled, axis=0))
+    free = freely_moving(brake.freedoms, matrix)
+    if free:
+        raise ValueError(
+            f"the brake '{brake.name}' has rigid-body motions ({', '.join(free)}) that no spring or damper "
+            "holds; couple those bodies, or integrate with motion.integrate (rigctl model simulate)"
+        )
     if not np.isfinite(condition) or condition > _WORST_CONDITION:
         raise ValueError(
             f"the brake '{brake.name}' at mu = {mu_ref:g} has no complete set of modes "
-            f"(condition {condition:.1e}); hold every body by a spring, or choose a slightly different mu_ref"
+            f"(condition {condition:.1e}); choose a slightly different mu_ref"
         )
     inverse = np.linalg.inv(vectors)
     kept = values.imag >= 0.0

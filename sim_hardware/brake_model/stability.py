@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_hardware.brake_model.assembly import Brake
+from sim_hardware.brake_model.rigid_body import eigenvalues, largest_growth
 
 PA_PER_BAR = 1e5
 
@@ -86,7 +87,7 @@ def eigen_pairs(
     pressure_bar : brake pressure; acts only with k > 0
     """
     matrix = brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR)
-    return _pairs(np.linalg.eigvals(matrix).astype(complex))
+    return _pairs(eigenvalues(matrix))
 
 
 def onset_pressure(
@@ -162,7 +163,7 @@ def _first_crossing(matrix: Callable[[float], NDArray[np.float64]], top: float, 
     if steps < 1:
         raise ValueError(f"steps is {steps!r}; give at least 1")
     grid = np.linspace(0.0, top, steps + 1)
-    growth = np.linalg.eigvals(np.stack([matrix(float(value)) for value in grid])).real.max(axis=1)
+    growth = largest_growth(np.stack([matrix(float(value)) for value in grid]))
     unstable = np.flatnonzero(growth > 0.0)
     if unstable.size == 0:
         return None
@@ -170,10 +171,10 @@ def _first_crossing(matrix: Callable[[float], NDArray[np.float64]], top: float, 
     below, value = float(grid[max(first - 1, 0)]), float(grid[first])
     while value - below > _ONSET_TOLERANCE * top:  # bisection: safe where the leading pair changes
         middle = 0.5 * (below + value)
-        if np.linalg.eigvals(matrix(middle)).real.max() > 0.0:
+        if largest_growth(matrix(middle)[None])[0] > 0.0:
             value = middle
         else:
             below = middle
-    at_onset = np.linalg.eigvals(matrix(value))
+    at_onset = eigenvalues(matrix(value))
     critical = at_onset[int(np.argmax(at_onset.real))]
     return Onset(value, abs(float(critical.imag)) / (2.0 * math.pi))
