@@ -4,6 +4,7 @@ import io
 import json
 import re
 import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -143,12 +144,21 @@ def test_page_is_self_contained_and_holds_all_modes(model: LinearBrake) -> None:
     shapes = mode_shapes(model)
     text = page(model, shapes, 5)
     assert not re.search(r"(src|href)\s*=|url\(|@import|https?://(?!www\.w3\.org/2000/svg)", text)
-    assert "$" + "{b.fill}" in text and "$data" not in text and "$first" not in text
-    data = json.loads(re.search(r"const data=(\{.*?\}), size=", text, re.S).group(1))  # type: ignore[union-attr]
+    assert "$" not in text
+    data = json.loads(re.search(r"const data = (\{.*?\});\n", text, re.S).group(1))  # type: ignore[union-attr]
     assert [m["number"] for m in data["modes"]] == list(range(1, 15))
     assert {b["name"] for b in data["bodies"]} == set(data["modes"][0]["motions"])
-    motion = data["modes"][4]["motions"]["inner_pad"]
-    assert [complex(*z) for z in motion] == pytest.approx(shapes[4].body_motion("inner_pad").tolist())
+    motion = np.array([complex(*z) for z in data["modes"][4]["motions"]["inner_pad"]])
+    assert motion / [1e3, 1e3, 1.0] == pytest.approx(shapes[4].body_motion("inner_pad"))  # mm on the page
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node to read the script with")
+def test_script_of_the_page_is_javascript(model: LinearBrake, tmp_path: Path) -> None:
+    text = page(model, mode_shapes(model), 1)
+    script = re.search(r"<script>(.*)</script>", text, re.S).group(1)  # type: ignore[union-attr]
+    (tmp_path / "page.js").write_text(script)
+    done = subprocess.run(["node", "--check", str(tmp_path / "page.js")], capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
 
 
 @pytest.mark.skipif(shutil.which("ffmpeg") is not None, reason="ffmpeg is installed")
