@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_hardware.brake_model.batches import matrix_batch
 from sim_hardware.brake_model.linear import PRESSURE, LinearModel
+from sim_hardware.brake_model.matrix_batches import matrix_batch
 
 Array = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ def _along(
 
 def _growth(matrices: Array) -> tuple[Array, Array]:
     """Largest real part (1/s) and its frequency (Hz) of each matrix."""
-    values = np.linalg.eigvals(matrices)
+    values: NDArray[np.complex128] = np.linalg.eigvals(matrices).astype(complex)
     leading = values.real.argmax(axis=1)
     rows = np.arange(len(matrices))
     return values.real[rows, leading], np.abs(values.imag[rows, leading]) / (2.0 * np.pi)

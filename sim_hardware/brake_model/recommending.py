@@ -28,6 +28,10 @@ Verdict = Literal["recommended", "with care", "no effect", "not recommended"]
 VERDICTS: tuple[Verdict, ...] = ("recommended", "with care", "no effect", "not recommended")
 
 
+#: rises below this share of a real part are rounding
+_ROUNDING = 1e-9
+
+
 @dataclass(frozen=True, slots=True)
 class RecommendationRule:
     """Thresholds.
@@ -35,9 +39,9 @@ class RecommendationRule:
     - gain counts from `least_gain` x the mean |Re| of the modes below the frequency; a loss likewise.
     - a mode is made worse when its real part rises by more than `harm` x its own |Re|.
     - an onset moves when it changes by more than `onset` x its value.
-    helps: gain at every friction, or a higher onset without loss. recommended: helps, no mode worse, onset not
-    lower. with care: helps, but a mode is worse or the onset lower. no effect: nothing of all this. Else not
-    recommended.
+    helps: gain at every friction, or a higher onset without loss. recommended: helps, no mode worse, onset
+    not lower. with care: helps, but a mode is worse or the onset lower. no effect: none of this.
+    Else not recommended.
     """
 
     below_hz: float = 5000.0
@@ -60,6 +64,7 @@ class Recommendations:
         negative: rise
     harm : largest rise of a real part as share of its |Re|, at any friction and frequency; 0 where none rises
     harmed : mode (index) with that rise
+    least_gain_1_s : what counts as gain
     onset_changes : change of the onset, unit of its quantity; nan where either never becomes unstable
     sure : whether the identity of all modes is certain throughout
     """
@@ -68,6 +73,7 @@ class Recommendations:
     mus: tuple[float, ...]
     resolved: Resolved
     gains: Array
+    least_gain_1_s: float
     harm: Array
     harmed: NDArray[np.intp]
     onset: Onsets | None
@@ -83,7 +89,7 @@ class Recommendations:
     @property
     def order(self) -> NDArray[np.intp]:
         """Best first: by verdict, then gain."""
-        return np.lexsort((-self.gains, [VERDICTS.index(verdict) for verdict in self.verdicts]))
+        return np.lexsort((-self.gains, np.array([VERDICTS.index(verdict) for verdict in self.verdicts])))
 
 
 def recommend(
@@ -119,12 +125,13 @@ def recommend(
     scale = np.maximum(np.abs(before), 1e-9 * np.abs(resolved.nominal).max())
     rises = (changes / scale).max(axis=1)
     harmed = rises.argmax(axis=1)
-    harm = np.maximum(rises[np.arange(len(rises)), harmed], 0.0)
+    harm = rises[np.arange(len(rises)), harmed]
+    harm = np.where(harm > _ROUNDING, harm, 0.0)
     onset = _onset(model, variations, values, pressure_max_bar)
     change = np.full(len(variations), np.nan) if onset is None else onset.values[1:] - onset.values[0]
     least = rule.least_gain * float(np.abs(before[:, below]).mean()) if below.any() else 0.0
     share = np.zeros(len(variations)) if onset is None else np.nan_to_num(change / onset.values[0])
-    verdicts = tuple(
+    verdicts: tuple[Verdict, ...] = tuple(
         _verdict(float(g), float(h), float(s), least, rule)
         for g, h, s in zip(gains, harm, share, strict=True)
     )
@@ -133,11 +140,12 @@ def recommend(
         tuple(mus),
         resolved,
         gains,
+        least,
         harm,
         kept[harmed],
         onset,
         change,
-        resolved.sure.all(axis=(1, 2)),
+        np.asarray(resolved.sure.all(axis=(1, 2))),
         verdicts,
     )
 

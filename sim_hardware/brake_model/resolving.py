@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from sim_hardware.brake_model.batches import MatrixBatch, matrix_batch
 from sim_hardware.brake_model.linear import LinearModel, Matrices, value_of
+from sim_hardware.brake_model.matrix_batches import MatrixBatch, matrix_batch
 from sim_hardware.brake_model.sensitivity import ComplexArray, EigenSystem, eigen_system
 from sim_hardware.brake_model.variations import Variation
 

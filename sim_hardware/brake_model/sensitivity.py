@@ -1,7 +1,7 @@
 """Analytic sensitivity of all eigenvalues by all quantities (eq 24), and where it has no meaning.
 
 Eigenvalues l and vectors of the pencil Q(l) = l^2 M + l D + K: Q v = 0, w^T Q = 0. For the pencil eq 24 reads
-dl/dp = - w^T (l^2 dM + l dD + dK) v / w^T (2 l M + D) v: the same number as with the state matrix, without dA.
+dl/dp = - w^T (l^2 dM + l dD + dK) v / w^T (2 l M + D) v: the same number as with the state matrix, and no dA.
 Where two eigenvalues coincide, or nearly so with one common vector (defective: w^T v -> 0), a derivative does
 not exist or is drowned by rounding: such eigenvalues get nan and a reason instead of a number.
 NOT its job: finite changes (`variations`), choosing quantities for people, tables.
@@ -183,13 +183,13 @@ def parameter_names(model: LinearModel, *, places: bool = False, operating: bool
     """Quantities worth a sensitivity: the parameters of the file, on request every place of an expression
     too.
 
-    `operating`: also mu, slope, pressure and the like.
+    Models made elsewhere have no parameters but parts ("part.K_mu"): then these. `operating`: also mu, slope,
+    pressure and the like.
     """
-    return tuple(
-        name
-        for name, quantity in model.quantities.items()
-        if (places or "." not in name) and (operating or quantity.kind != "operating")
-    )
+    plain = [q for q in model.quantities.values() if "." not in q.name]
+    everything = places or all(q.kind == "operating" for q in plain)
+    chosen = model.quantities.values() if everything else plain
+    return tuple(q.name for q in chosen if operating or q.kind != "operating")
 
 
 def derivatives(

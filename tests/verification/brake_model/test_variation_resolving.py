@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.batches import matrix_batch
+from sim_hardware.brake_model.matrix_batches import matrix_batch
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, ParameterGroup, value_of
 from sim_hardware.brake_model.margins import onsets
 from sim_hardware.brake_model.parametric import LinearBrake

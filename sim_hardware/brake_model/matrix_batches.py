@@ -96,7 +96,7 @@ def _brake_batch(model: LinearBrake, variants: Sequence[Values]) -> MatrixBatch:
         for name in values.keys() & operating.keys():
             at[name][number] = values[name]
     for name, found in at.items():
-        bad = ~(np.isfinite(found) & (found >= 0.0))
+        bad = ~(np.isfinite(found) & (found >= 0.0)) | ((found == 0.0) & (name == AREA))
         if bad.any():
             model.matrices(variants[int(np.flatnonzero(bad)[0])])  # raises with the model's own words
             raise AssertionError(f"{name} was accepted by the model")
