@@ -66,7 +66,7 @@ class BeltOscillator(BaseModel):
         damping."""
         if self.normal_force_n == 0.0:
             return -math.inf if self.damping_ns_m > 0.0 else 0.0
-        return -self.damping_ns_m / self.normal_force_n
+        return 0.0 - self.damping_ns_m / self.normal_force_n
 
     @property
     def falls_too_steeply(self) -> bool:
@@ -137,7 +137,7 @@ class BeltOscillator(BaseModel):
         square = self.stiffness_n_m / self.mass_kg
         root = cmath.sqrt(half * half - square)
         if root.imag != 0.0:
-            return complex(-half, abs(root.imag)), complex(-half, -abs(root.imag))
+            return complex(0.0 - half, abs(root.imag)), complex(0.0 - half, -abs(root.imag))
         far = -half - math.copysign(root.real, half)
         near = square / far if far != 0.0 else 0.0  # free of cancellation
         return complex(max(near, far)), complex(min(near, far))

@@ -1,5 +1,6 @@
-"""Sprag-slip and the 2-DOF model: criteria against eigenvalues, Hurwitz's boundaries, published cases as data."""
+"""Sprag-slip and the 2-DOF model: criteria against eigenvalues, Hurwitz's boundaries, published cases."""
 
+import itertools
 import math
 
 import numpy as np
@@ -93,8 +94,8 @@ def test_sprag_extremes() -> None:
 
 positive = st.floats(0.05, 20.0)
 pads = st.builds(
-    TwoDofModel, mass=positive, inertia=positive, d1=positive, d2=positive, c1=positive, c2=positive, c3=positive,
-    s=st.floats(-3.0, 3.0), h=st.floats(-3.0, 3.0),
+    TwoDofModel, mass=positive, inertia=positive, d1=positive, d2=positive,
+    c1=positive, c2=positive, c3=positive, s=st.floats(-3.0, 3.0), h=st.floats(-3.0, 3.0),
 )  # fmt: skip
 
 
@@ -162,7 +163,7 @@ def test_first_instability_is_the_first_along_a_fine_path(model: TwoDofModel) ->
 
 
 def test_mode_coupling_of_figure_1b() -> None:
-    """Frequencies approach, then the real parts part; flutter at mu = 0.4715, 2379 Hz, divergence far beyond."""
+    """Frequencies approach, then the real parts part; flutter at mu = 0.4715, 2379 Hz, divergence far off."""
     role, crossing = first_instability(PAD.system)
     assert role == "flutter"
     assert crossing.mu == pytest.approx(0.47149, abs=1e-5)
@@ -228,7 +229,7 @@ def test_two_dof_extremes() -> None:
 @given(roots=st.lists(st.floats(-5.0, 5.0), min_size=1, max_size=4, unique=True))
 def test_real_roots(roots: list[float]) -> None:
     ordered = sorted(roots)
-    assume(all(b - a > 0.1 for a, b in zip(ordered, ordered[1:], strict=False)))
+    assume(all(b - a > 0.1 for a, b in itertools.pairwise(ordered)))
     assert real_roots(np.polynomial.polynomial.polyfromroots(ordered)) == pytest.approx(ordered, abs=1e-6)
 
 

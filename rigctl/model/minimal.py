@@ -1,0 +1,698 @@
+"""Studies of the minimal models (Table 1, Fig. 1): belt oscillator, sprag-slip, 2-DOF model, published cases.
+
+Job: build `Study` objects (facts, tables, figures) from `sim_hardware.brake_model.minimal`, with the paper's
+statements beside ours. NOT its job: mechanics (there), drawing (`figures_minimal`), command line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigctl.model import figures_minimal as figures
+from rigctl.model.output import Column, Study, Table
+from sim_hardware.brake_model.minimal.belt import BeltOscillator
+from sim_hardware.brake_model.minimal.cases import BeltCase, TwoDofCase, check_case
+from sim_hardware.brake_model.minimal.cycles import (
+    LimitCycle,
+    PhasePlane,
+    SpeedCurve,
+    default_amplitude_m,
+    frequency_over_speed,
+    largest_one_way_speed,
+    next_turn_m,
+    orbit,
+    phase_plane,
+)
+from sim_hardware.brake_model.minimal.hurwitz import (
+    Crossing,
+    first_instability,
+    hurwitz_boundaries,
+    root_locus,
+)
+from sim_hardware.brake_model.minimal.laws import BeltLaw, CoulombLaw, ExponentialLaw, LinearFallingLaw
+from sim_hardware.brake_model.minimal.motion import Trajectory, simulate
+from sim_hardware.brake_model.minimal.sprag import SpragModel, needed_disc_damping, smallest_critical_mu
+from sim_hardware.brake_model.minimal.two_dof import TwoDofModel
+
+Array = NDArray[np.float64]
+UM = 1e6
+
+COULOMB = CoulombLaw(mu_static=0.5, mu_dynamic=0.4)
+FALLING = LinearFallingLaw(mu_static=0.5, slope_s_m=0.6)
+EXPONENTIAL = ExponentialLaw(mu_static=0.5, mu_dynamic=0.4, speed_scale_m_s=0.1)
+LAWS: tuple[BeltLaw, ...] = (COULOMB, FALLING, EXPONENTIAL)
+
+BELT = BeltOscillator(
+    mass_kg=1.0, stiffness_n_m=1.8e8, normal_force_n=3435.0, belt_speed_m_s=0.15, law=FALLING
+)
+"""1 kg at 2135 Hz under 15 bar; the slope is ten times the measured one, so that growth is seen by eye."""
+
+SPEEDS_M_S = (0.01, 1.0)
+SPRAG = SpragModel(
+    mass_kg=1.0,
+    angle_rad=math.radians(15.0),
+    disc_damping_ns_m=1000.0,
+    pad_damping_ns_m=20.0,
+    pad_stiffness_n_m=1.8e8,
+)
+PAD = TwoDofModel(mass=0.4, inertia=4.7e-4, d1=60.0, d2=0.07, c1=3.4e7, c2=1.12e5, c3=5e7, s=0.005, h=0.0165)
+"""Sizes of a brake pad: modes at 2309 and 2400 Hz that mu brings together."""
+
+
+# ---------------------------------------------------------------------------------------------- belt
+
+
+def belt_study(
+    belt: BeltOscillator = BELT,
+    *,
+    laws: Sequence[BeltLaw] = LAWS,
+    speeds_m_s: tuple[float, float] = SPEEDS_M_S,
+    points: int = 41,
+    name: str = "belt",
+) -> Study:
+    """Phase plane with limit cycles and stability regions (Fig. 1a), limit-cycle frequency over belt speed.
+
+    Parameters
+    ----------
+    belt : the oscillator of the phase plane
+    laws : friction laws compared over the belt speed, on the same oscillator
+    speeds_m_s, points : range of belt speeds (spaced by equal ratios) and their number
+
+    Raises
+    ------
+    ValueError
+        no stiffness, belt at rest or faster than its law reaches, or a range of speeds that is none
+    """
+    low, high = speeds_m_s
+    if not (0.0 < low < high < math.inf and points >= 2):
+        raise ValueError(
+            f"speeds = {low:g} … {high:g} m/s in {points} points: not a range above 0. "
+            "Give two rising speeds and at least 2 points"
+        )
+    if belt.law.zero_speed_m_s <= belt.belt_speed_m_s:
+        raise ValueError(
+            f"belt_speed_m_s = {belt.belt_speed_m_s:g}: beyond {belt.law.zero_speed_m_s:.3g} m/s the law "
+            "gives a negative mu. Give a smaller belt speed or slope"
+        )
+    plane = phase_plane(belt)
+    amplitudes = np.geomspace(0.02 * _scale_m(belt, plane), _reach_m(belt, plane), 70)
+    turns = np.array([next_turn_m(belt, float(a)) for a in amplitudes])
+    paths = _trajectories(belt, plane)
+    speeds = np.geomspace(low, high, points)
+    curves = {law.law: frequency_over_speed(belt.changed(law=law), speeds) for law in laws}
+    facts = _belt_facts(belt, plane) | _speed_facts(belt, laws, curves)
+    return Study(
+        name=name,
+        title="Oscillator on a moving belt: falling friction as a mechanism of squeal (section 1.1, Fig. 1a)",
+        facts=facts,
+        tables=(
+            _cycles_table(plane),
+            _regions_table(plane),
+            _paper_table(_belt_statements(belt, plane, laws, curves), "1.1"),
+            _frequency_table(curves),
+            Table(
+                "turns",
+                "Amplitude before and after one turn",
+                (
+                    Column("amplitude", "µm", (amplitudes * UM).tolist()),
+                    Column("next amplitude", "µm", (turns * UM).tolist()),
+                ),
+            ),
+            _trajectories_table(paths),
+        ),
+        figures={
+            "phase_plane": partial(figures.belt_phase_plane, belt, plane, paths, amplitudes, turns),
+            "frequency": partial(
+                figures.belt_frequency,
+                belt,
+                curves,
+                facts.get("linear_one_way_up_to_m_s", math.nan),
+                constant=facts.get("linear_spread_up_to_there_percent", math.inf) < 1e-4,
+            ),
+        },
+    )
+
+
+def figure_1a_study() -> Study:
+    """Fig. 1a of the paper with our default numbers."""
+    return belt_study(name="figure_1a")
+
+
+def _scale_m(belt: BeltOscillator, plane: PhasePlane) -> float:
+    stable = [c.turn_m for c in plane.cycles if c.stable]
+    return min(stable) if stable else belt.belt_speed_m_s / belt.angular_frequency_1_s
+
+
+def _reach_m(belt: BeltOscillator, plane: PhasePlane) -> float:
+    """Largest amplitude drawn: beyond the outermost cycle."""
+    largest = max((c.turn_m for c in plane.cycles), default=0.0)
+    return max(1.6 * largest, 3.0 * _scale_m(belt, plane), 0.3 * default_amplitude_m(belt))
+
+
+def _trajectories(belt: BeltOscillator, plane: PhasePlane) -> dict[str, Trajectory]:
+    """Limit cycle and motions beginning inside and outside of it; boundary orbits of the regions."""
+    paths: dict[str, Trajectory] = {}
+    size = _scale_m(belt, plane)
+    period = 1.0 / belt.frequency_hz
+    rest = belt.equilibrium_m
+    first = plane.regions[0]
+    if math.isfinite(first.to_m):
+        inside = 0.12 * size if first.behaviour == "diverging" else 0.7 * min(size, first.to_m)
+        paths["from inside"] = _until_stuck(simulate(belt, rest + inside, 0.0, 6.0 * period))
+        paths["from outside"] = _until_stuck(simulate(belt, rest + 1.6 * size, 0.0, 3.0 * period))
+    else:  # no turn at all: until it is a hundred times as far
+        growth = belt.eigenvalues()[0].real
+        paths["from inside"] = simulate(belt, rest + 0.01 * size, 0.0, math.log(100.0) / growth)
+    for cycle in plane.cycles:
+        paths[f"{cycle.kind} cycle {cycle.turn_m * UM:.4g} µm"] = cycle.trajectory
+    for region in plane.regions[:-1]:
+        if not any(math.isclose(c.turn_m, region.to_m, rel_tol=1e-6) for c in plane.cycles):
+            turn = orbit(belt, region.to_m)
+            if turn is not None:
+                paths[f"boundary {region.to_m * UM:.4g} µm"] = turn
+    return paths
+
+
+def _until_stuck(path: Trajectory) -> Trajectory:
+    """The trajectory up to where it sticks first: from there on it is the limit cycle."""
+    end = next((i for i, phase in enumerate(path.phases) if phase.kind == "stick"), len(path.phases))
+    return Trajectory(path.phases[: end + 1])
+
+
+def _belt_facts(belt: BeltOscillator, plane: PhasePlane) -> dict[str, Any]:
+    eigenvalues = belt.eigenvalues()
+    stick_slip = next((c for c in plane.cycles if c.kind == "stick-slip"), None)
+    return {
+        "friction_law": belt.law.law,
+        "natural_frequency_hz": belt.frequency_hz,
+        "equilibrium_um": belt.equilibrium_m * UM,
+        "slope_at_equilibrium_s_m": belt.slope_s_m,
+        "critical_slope_s_m": belt.critical_slope_s_m,
+        "equilibrium_unstable": belt.falls_too_steeply,
+        "damping_ratio_D": belt.damping_ratio,
+        "dimensionless_belt_speed": belt.dimensionless().belt_speed if belt.normal_force_n else None,
+        "growth_rate_1_s": eigenvalues[0].real,
+        "growth_per_turn": float(np.exp(2.0 * math.pi * eigenvalues[0].real / abs(eigenvalues[0].imag)))
+        if eigenvalues[0].imag
+        else None,
+        "stick_slip_frequency_hz": stick_slip.frequency_hz if stick_slip else None,
+        "stick_slip_amplitude_um": stick_slip.amplitude_m * UM if stick_slip else None,
+        "stick_share": stick_slip.stick_share if stick_slip else None,
+        "mu_negative_beyond_m_s": belt.law.zero_speed_m_s,
+    }
+
+
+def _speed_facts(
+    belt: BeltOscillator, laws: Sequence[BeltLaw], curves: dict[str, SpeedCurve]
+) -> dict[str, Any]:
+    facts: dict[str, Any] = {}
+    for law in laws:
+        facts[f"{law.law}_frequency_spread_percent"] = 100.0 * curves[law.law].spread
+        if isinstance(law, LinearFallingLaw):
+            oscillator = belt.changed(law=law)
+            facts["linear_one_way_up_to_m_s"] = largest_one_way_speed(oscillator)
+            facts["linear_spread_up_to_there_percent"] = 100.0 * _one_way_spread(oscillator, curves[law.law])
+    return facts
+
+
+def _one_way_spread(belt: BeltOscillator, curve: SpeedCurve) -> float:
+    """Spread of the frequency where the linear law's cycle slides one way only; nan below two speeds."""
+    within = curve.exists & (curve.speeds_m_s <= largest_one_way_speed(belt))
+    f = curve.frequency_hz[within]
+    return float((f.max() - f.min()) / f.mean()) if f.size > 1 else math.nan
+
+
+Statement = tuple[str, str, str, bool]
+
+
+def _paper_table(rows: Sequence[Statement], section: str) -> Table:
+    """The paper's statements beside ours: (what, the paper says, we find, whether it holds)."""
+    return Table(
+        "paper",
+        f"What the paper says (section {section}) and what this model does",
+        (
+            Column("quantity", "", [row[0] for row in rows]),
+            Column("unit", "", [""] * len(rows)),
+            Column("paper", "", [row[1] for row in rows]),
+            Column("ours", "", [row[2] for row in rows]),
+            Column("deviation", "%", [None] * len(rows)),
+            Column("holds", "", [row[3] for row in rows]),
+        ),
+    )
+
+
+def _belt_statements(
+    belt: BeltOscillator, plane: PhasePlane, laws: Sequence[BeltLaw], curves: dict[str, SpeedCurve]
+) -> list[Statement]:
+    """Statements of section 1.1 that these parameters speak to."""
+    rows: list[Statement] = []
+    if isinstance(belt.law, LinearFallingLaw):
+        rows += _plane_statements(belt, plane)
+    for law in laws:
+        curve = curves[law.law]
+        f = curve.frequency_hz[curve.exists]
+        if f.size < 2:
+            continue
+        span = f"{f.min():.1f} … {f.max():.1f} Hz"
+        if isinstance(law, CoulombLaw):
+            rows.append(
+                ("limit-cycle frequency over belt speed, Coulomb", "depends on it", span, curve.spread > 1e-3)
+            )
+        elif isinstance(law, LinearFallingLaw):
+            oscillator = belt.changed(law=law)
+            limit, spread = largest_one_way_speed(oscillator), _one_way_spread(oscillator, curve)
+            if math.isfinite(spread):
+                ours = f"constant within {100 * spread:.0e} % up to {limit:.3g} m/s; over all speeds {span}"
+                rows.append(
+                    (
+                        "limit-cycle frequency over belt speed, linear falling",
+                        "independent",
+                        ours,
+                        spread < 1e-6,
+                    )
+                )
+    return rows
+
+
+def _plane_statements(belt: BeltOscillator, plane: PhasePlane) -> list[Statement]:
+    behaviours = [region.behaviour for region in plane.regions]
+    found = ", ".join(f"{c.kind} {c.frequency_hz:.1f} Hz" for c in plane.cycles if c.stable) or "none"
+    outside = ", ".join(behaviours[1:]) or "nothing"
+    outer = [c for c in plane.cycles if not c.stable]
+    if outer:
+        mu = "mu is still positive" if outer[-1].law_valid else "eq 28 gives a negative mu"
+        outside += f" (from {outer[-1].turn_m * UM:.3g} µm, where {mu})"
+    return [
+        (
+            "falling law, near the equilibrium",
+            "trajectories diverge",
+            f"{behaviours[0]}, D = {belt.damping_ratio:.4g}",
+            behaviours[0] == "diverging",
+        ),
+        (
+            "falling law, limit cycle",
+            "stick-slip",
+            found,
+            any(c.kind == "stick-slip" and c.stable for c in plane.cycles),
+        ),
+        (
+            "falling law, outside the limit cycle",
+            "diverging or contracting, by the parameters",
+            outside,
+            "contracting" in behaviours[1:],
+        ),
+    ]
+
+
+def _cycles_table(plane: PhasePlane) -> Table:
+    cycles: tuple[LimitCycle, ...] = plane.cycles
+    return Table(
+        "cycles",
+        "Limit cycles",
+        (
+            Column("kind", "", [c.kind for c in cycles]),
+            Column("stable", "", [c.stable for c in cycles]),
+            Column("frequency", "Hz", [c.frequency_hz for c in cycles]),
+            Column("amplitude", "µm", [c.amplitude_m * UM for c in cycles]),
+            Column("turning point", "µm", [c.turn_m * UM for c in cycles]),
+            Column("stick share", "", [c.stick_share for c in cycles]),
+            Column("largest slip speed", "m/s", [c.slip_speed_max_m_s for c in cycles]),
+            Column("mu stays positive", "", [c.law_valid for c in cycles]),
+            Column("multiplier", "", [c.multiplier for c in cycles]),
+        ),
+    )
+
+
+def _regions_table(plane: PhasePlane) -> Table:
+    return Table(
+        "regions",
+        "Regions of the phase plane by amplitude",
+        (
+            Column("from", "µm", [r.from_m * UM for r in plane.regions]),
+            Column("to", "µm", [r.to_m * UM for r in plane.regions]),
+            Column("behaviour", "", [r.behaviour for r in plane.regions]),
+        ),
+    )
+
+
+def _frequency_table(curves: dict[str, SpeedCurve]) -> Table:
+    names = [law for law, curve in curves.items() for _ in curve.kinds]
+
+    def column(field: str, factor: float = 1.0) -> list[float]:
+        return [float(v) * factor for curve in curves.values() for v in getattr(curve, field)]
+
+    return Table(
+        "frequency",
+        "Limit cycle over belt speed",
+        (
+            Column("law", "", names),
+            Column("belt speed", "m/s", column("speeds_m_s")),
+            Column("frequency", "Hz", column("frequency_hz")),
+            Column("amplitude", "µm", column("amplitude_m", UM)),
+            Column("stick share", "", column("stick_share")),
+            Column("kind", "", [kind or None for curve in curves.values() for kind in curve.kinds]),
+            Column("mu stays positive", "", [v for curve in curves.values() for v in curve.law_valid]),
+        ),
+    )
+
+
+def _trajectories_table(paths: dict[str, Trajectory]) -> Table:
+    sampled = {name: path.sampled(300) for name, path in paths.items()}
+
+    def column(index: int) -> Array:
+        return np.concatenate([s[index] for s in sampled.values()])
+
+    return Table(
+        "trajectories",
+        "Trajectories of the phase plane",
+        (
+            Column("trajectory", "", [name for name, s in sampled.items() for _ in s[0]]),
+            Column("time", "s", column(0).tolist()),
+            Column("position", "µm", (column(1) * UM).tolist()),
+            Column("velocity", "m/s", column(2).tolist()),
+        ),
+    )
+
+
+# --------------------------------------------------------------------------------------------- sprag
+
+
+def sprag_study(
+    model: SpragModel = SPRAG,
+    *,
+    mu_max: float = 1.5,
+    ratios: Sequence[float] = (0.0, 0.05, 0.1),
+    points: int = 241,
+) -> Study:
+    """Geometric instability: the criterion of Table 1 over the angle, both signs, and which dampers it needs.
+
+    Parameters
+    ----------
+    model : strut model; its angle is marked
+    mu_max : largest coefficient of friction drawn, both directions of rotation
+    ratios : d2 / d1 compared with the model's own
+    points : angles between -80° and 80°
+
+    Raises
+    ------
+    ValueError
+        mu_max not above 0, too few points, no damper at the disc
+    """
+    if not (0.0 < mu_max < math.inf and points >= 3):
+        raise ValueError(f"mu_max = {mu_max:g}, points = {points}: give mu_max above 0 and at least 3 points")
+    if model.disc_damping_ns_m == 0.0:
+        raise ValueError("disc damping d1 = 0: no friction makes it unstable. Give a damping above 0")
+    own = model.pad_damping_ns_m / model.disc_damping_ns_m
+    angles = np.linspace(-80.0, 80.0, points)
+    table, worst = _sprag_table(model, angles)
+    least, angle = smallest_critical_mu(own)
+    mus = np.array([0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0])
+    needed = np.array([needed_disc_damping(float(mu)) for mu in mus])
+    facts = {
+        "damping_ratio_d2_d1": own,
+        "angle_deg": math.degrees(model.angle_rad),
+        "critical_mu_at_that_angle": model.critical_mu,
+        "smallest_critical_mu_of_any_angle": least,
+        "at_angle_deg": math.degrees(angle),
+        "d1_over_d2_needed_at_mu_0.4": needed_disc_damping(0.4),
+        "d1_over_d2_needed_at_mu_0.6": needed_disc_damping(0.6),
+        "smallest_critical_mu_for_equal_dampers": smallest_critical_mu(1.0)[0],
+        "largest_damping_ratio_error_on_the_boundary": worst,
+        "verdict": "As the paper says: only with d1 >> d2. "
+        f"mu = 0.4 needs d1 > {needed_disc_damping(0.4):.1f} d2 at its best angle; equal dampers need "
+        f"mu > {smallest_critical_mu(1.0)[0]:.2f}. A negative angle is unstable "
+        "only when the disc turns back.",
+    }
+    return Study(
+        name="sprag",
+        title="Geometric instability (Spurr, Crisp): criterion over the angle (section 1.2)",
+        facts=facts,
+        tables=(
+            table,
+            _paper_table(_sprag_statements(model), "1.2"),
+            Table(
+                "needed",
+                "Disc damper needed for instability at the best angle",
+                (Column("mu", "", mus.tolist()), Column("d1 / d2", "", needed.tolist())),
+            ),
+        ),
+        figures={
+            "criterion": partial(
+                figures.sprag_criterion, model, tuple(sorted({*map(float, ratios), own})), mu_max
+            )
+        },
+    )
+
+
+def _sprag_statements(model: SpragModel) -> list[Statement]:
+    mirrored = model.model_copy(update={"angle_rad": -abs(model.angle_rad)})
+    return [
+        (
+            "negative angle",
+            "the relation is inverted",
+            f"unstable below mu = {mirrored.critical_mu:.4g}: never while the disc turns forward",
+            not mirrored.unstable(10.0) and mirrored.unstable(1.001 * mirrored.critical_mu - 1e-9),
+        ),
+        (
+            "dampers for a realistic boundary",
+            "d1 should be bigger than d2",
+            f"mu = 0.4 needs d1 / d2 > {needed_disc_damping(0.4):.1f}, "
+            f"mu = 0.6 {needed_disc_damping(0.6):.1f}",
+            needed_disc_damping(0.6) > 1.0,
+        ),
+    ]
+
+
+def _sprag_table(model: SpragModel, angles_deg: Array) -> tuple[Table, float]:
+    """Criterion over the angle, and the largest damping ratio of the eigenvalues on it (0 if they agree)."""
+    critical: list[float] = []
+    smaller_unstable: list[str] = []
+    worst = 0.0
+    for degrees in angles_deg:
+        at = model.model_copy(update={"angle_rad": math.radians(float(degrees))})
+        mu = at.critical_mu
+        critical.append(mu)
+        if math.isfinite(mu):
+            eigenvalue = at.eigenvalues(mu)[0]
+            worst = max(worst, abs(eigenvalue.real) / max(abs(eigenvalue), 1e-300))
+        smaller_unstable.append("mu above it" if degrees > 0 else "mu below it" if degrees < 0 else "never")
+    return Table(
+        "criterion",
+        "tan(gamma) + 2 d2 / (sin(2 gamma) d1)",
+        (
+            Column("angle", "deg", angles_deg.tolist()),
+            Column("critical mu", "", critical),
+            Column("unstable for", "", smaller_unstable),
+        ),
+    ), worst
+
+
+# ------------------------------------------------------------------------------------------- two-dof
+
+
+def two_dof_study(
+    model: TwoDofModel | TwoDofCase = PAD, *, mu_max: float = 0.8, points: int = 801, name: str = "two_dof"
+) -> Study:
+    """Mode coupling: root locus over mu (Fig. 1b) and Hurwitz's five boundaries, each named.
+
+    Parameters
+    ----------
+    model : eq 1, or any 2-DOF case of the literature
+    mu_max, points : range from 0 of the locus, and its resolution
+
+    Raises
+    ------
+    ValueError
+        mu_max not above 0, or too few points
+    """
+    if not (0.0 < mu_max < math.inf and points >= 3):
+        raise ValueError(f"mu_max = {mu_max:g}, points = {points}: give mu_max above 0 and at least 3 points")
+    system = model.system
+    mus = np.linspace(0.0, mu_max, points)
+    locus = root_locus(system, mus)
+    upper = locus[:, locus[0].imag >= 0.0]
+    boundaries = hurwitz_boundaries(system)
+    first = _first(model)
+    frequencies = np.abs(upper.imag) / (2.0 * math.pi)
+    gap = frequencies.max(axis=1) - frequencies.min(axis=1)
+    facts: dict[str, Any] = {
+        "model": model.name,
+        "frequencies_at_mu_0_hz": [float(f) for f in np.sort(frequencies[0])],
+        "first_instability": first[0] if first else "none",
+        "critical_mu": first[1].mu if first else None,
+        "critical_frequency_hz": first[1].frequency_hz if first else None,
+        "undamped_coupling_mu": next((c.mu for c in boundaries[5].crossings if c.mu > 0), None),
+        "divergence_mu": next((c.mu for c in boundaries[0].crossings if c.mu > 0), None),
+        "frequency_gap_at_mu_0_hz": float(gap[0]),
+        "smallest_frequency_gap_hz": float(gap.min()),
+        "at_mu": float(mus[int(np.argmin(gap))]),
+        "real_parts_at_mu_max_1_s": [float(r) for r in np.sort(upper[-1].real)],
+    }
+    if isinstance(model, TwoDofModel):
+        facts["printed_expression_of_table_1"] = model.divergence_mu
+    facts["verdict"] = _two_dof_verdict(first, facts)
+    return Study(
+        name=name,
+        title="Nonconservative restoring forces: mode coupling over mu (section 1.3, Fig. 1b)",
+        facts=facts,
+        tables=(
+            _boundaries_table(boundaries),
+            _paper_table(_two_dof_statements(model, facts, first), "1.3"),
+            _locus_table(mus, upper),
+        ),
+        figures={"root_locus": partial(figures.two_dof_locus, mus, upper, first)},
+    )
+
+
+def figure_1b_study() -> Study:
+    """Fig. 1b of the paper with our default numbers."""
+    return two_dof_study(name="figure_1b")
+
+
+def _first(model: TwoDofModel | TwoDofCase) -> tuple[str, Crossing] | None:
+    return first_instability(model.system)
+
+
+def _two_dof_verdict(first: tuple[str, Crossing] | None, facts: dict[str, Any]) -> str:
+    if first is None:
+        return "Stable at every mu above 0."
+    kind, crossing = first
+    text = f"Unstable from mu = {crossing.mu:.4g} by {kind}"
+    text += f" at {crossing.frequency_hz:.5g} Hz." if crossing.frequency_hz else "."
+    divergence = facts["divergence_mu"]
+    if kind == "flutter" and divergence is not None:
+        text += (
+            f" The expression that Table 1 prints is divergence, det C < 0: mu = {divergence:.4g}, "
+            f"{divergence / crossing.mu:.3g} times as much; squeal begins at flutter."
+        )
+    return text
+
+
+def _two_dof_statements(
+    model: TwoDofModel | TwoDofCase, facts: dict[str, Any], first: tuple[str, Crossing] | None
+) -> list[Statement]:
+    """Statements of section 1.3; those on eq 1 for eq 1 only."""
+    gap, least = facts["frequency_gap_at_mu_0_hz"], facts["smallest_frequency_gap_hz"]
+    real = facts["real_parts_at_mu_max_1_s"]
+    reals = " and ".join(f"{r:.0f}" for r in real)
+    rows: list[Statement] = [
+        (
+            "frequencies with growing mu",
+            "grow closer",
+            f"apart by {gap:.1f} Hz, then {least:.2g} Hz",
+            least < gap,
+        ),
+        (
+            "real parts after that",
+            "move in opposite directions, instability",
+            f"{reals} 1/s at the end",
+            real[0] < 0.0 < real[-1],
+        ),
+    ]
+    if isinstance(model, TwoDofModel):
+        boundaries = hurwitz_boundaries(model.system)
+        expressions = [b.name for b in boundaries if b.role != "reference" and len(b.polynomial) > 1]
+        rows.append(("Hurwitz expressions in mu", "5", f"{len(expressions)}: {', '.join(expressions)}", True))
+        kind = f"{first[0]} at mu = {first[1].mu:.4g}" if first else "nothing at any mu"
+        rows.append(
+            (
+                "the expression printed in Table 1",
+                "instability",
+                f"det C < 0, divergence at mu = {model.divergence_mu:.4g}; first comes {kind}",
+                first is not None and first[0] == "divergence",
+            )
+        )
+        undamped = facts["undamped_coupling_mu"]
+        if undamped is not None and first is not None:
+            rows.append(
+                (
+                    "the mechanism needs certain damping",
+                    "no",
+                    f"undamped from mu = {undamped:.4g}, with these dampers {first[1].mu:.4g}",
+                    True,
+                )
+            )
+    return rows
+
+
+def _boundaries_table(boundaries: Any) -> Table:
+    rows = []
+    for boundary in boundaries:
+        crossings: Sequence[Crossing | None] = boundary.crossings or (None,)
+        rows += [(boundary, crossing) for crossing in crossings]
+    return Table(
+        "boundaries",
+        "Hurwitz's expressions as boundaries of mu",
+        (
+            Column("expression", "", [b.name for b, _ in rows]),
+            Column("condition", "", [b.formula for b, _ in rows]),
+            Column("role", "", [b.role for b, _ in rows]),
+            Column("mu", "", [c.mu if c else None for _, c in rows]),
+            Column("frequency", "Hz", [c.frequency_hz if c else None for _, c in rows]),
+            Column("border of stability", "", [bool(c and c.is_stability_boundary) for _, c in rows]),
+            Column("meaning", "", [b.meaning for b, _ in rows]),
+        ),
+    )
+
+
+def _locus_table(mus: Array, upper: NDArray[np.complex128]) -> Table:
+    hertz = np.abs(upper.imag) / (2.0 * math.pi)
+    columns = [Column("mu", "", mus.tolist())]
+    for i in range(upper.shape[1]):
+        columns.append(Column(f"frequency {i + 1}", "Hz", hertz[:, i].tolist()))
+        columns.append(Column(f"real part {i + 1}", "1/s", upper[:, i].real.tolist()))
+    return Table("locus", "Root locus over mu", tuple(columns))
+
+
+# --------------------------------------------------------------------------------------------- cases
+
+
+def cases_study(cases: Sequence[TwoDofCase | BeltCase]) -> Study:
+    """Published and derived numbers of systems of the literature beside ours.
+
+    Raises
+    ------
+    ValueError
+        a case expects what it cannot have
+    """
+    checks = [(case, check) for case in cases for check in check_case(case)]
+    return Study(
+        name="cases",
+        title="Systems of the literature, fed in as data",
+        facts={
+            "cases": len(cases),
+            "numbers": len(checks),
+            "passed": sum(check.passed for _, check in checks),
+            "largest_relative_error": max((c.relative_error for _, c in checks), default=0.0),
+        },
+        tables=(
+            Table(
+                "numbers",
+                "Expected and computed",
+                (
+                    Column("case", "", [case.name for case, _ in checks]),
+                    Column("quantity", "", [c.expectation.quantity for _, c in checks]),
+                    Column("expected", "", [c.expectation.value for _, c in checks]),
+                    Column("computed", "", [c.computed for _, c in checks]),
+                    Column("relative error", "", [c.relative_error for _, c in checks]),
+                    Column("passed", "", [c.passed for _, c in checks]),
+                    Column("derivation", "", [c.expectation.derivation for _, c in checks]),
+                ),
+            ),
+            Table(
+                "sources",
+                "Sources",
+                (
+                    Column("case", "", [case.name for case in cases]),
+                    Column("title", "", [case.title for case in cases]),
+                    Column("source", "", [case.source for case in cases]),
+                ),
+            ),
+        ),
+    )
