@@ -11,7 +11,7 @@ from rich.console import Console
 
 from rigctl.app import exit_codes
 from rigctl.app.compose import build_rig, dry_run, read_program, read_rig, resolved_paths
-from rigctl.app.progress_view import duration_text
+from rigctl.app.durations import duration_text
 from rigctl.hal.devices import RigContext
 from rigctl.safety.limits import load_limits
 

@@ -131,6 +131,15 @@ def stability(
     raise typer.Exit(show_stability(brake, k, mu, max_bar, _console()))
 
 
+def _add_model_commands() -> None:
+    from rigctl.app.model import model_app
+
+    app.add_typer(model_app(), name="model")
+
+
+_add_model_commands()
+
+
 def _version(wanted: bool) -> None:
     if wanted:
         print(f"rigctl {__version__}")

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
+from rigctl.app.durations import duration_text
 from rigctl.engine.state import Progress
 from sequences.capabilities import RigCapabilities
 from sequences.estimate import ThermalWalk
@@ -97,16 +98,6 @@ class ProgressView:
         factor = progress.rig_s / elapsed
         left = (self._cumulated_s[-1] - done_s) * elapsed / progressed if progressed > 0 else None
         return factor, left
-
-
-def duration_text(seconds: float) -> str:
-    """A duration as people write it: 42 s, 3 min 20 s, 5 h 10 min."""
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
 
 
 def _cumulated(program: Program, capabilities: RigCapabilities) -> list[float]:

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from rigctl.app.campaign_file import CampaignFile
 from rigctl.app.compose import prediction_of
-from rigctl.app.progress_view import duration_text
+from rigctl.app.durations import duration_text
 
 
 def make_report(

@@ -28,7 +28,8 @@ from rigctl.app.compose import (
     read_rig,
     resolved_paths,
 )
-from rigctl.app.progress_view import ProgressView, duration_text
+from rigctl.app.durations import duration_text
+from rigctl.app.progress_view import ProgressView
 from rigctl.app.reporting import make_report
 from rigctl.app.supervisor import Supervisor
 from rigctl.core.errors import ConfigError, SafetyTrip

@@ -12,17 +12,15 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from rigctl.analysis.style import drawing, render
 from rigctl.core.errors import ConfigError
+from rigctl.model.formats import FIGURE_FORMATS, FORMATS
 
-FIGURE_FORMATS = ("png", "svg")
-TABLE_FORMATS = ("csv", "parquet")
-FORMATS = (*FIGURE_FORMATS, *TABLE_FORMATS, "json")
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +130,8 @@ def _write(study: Study, folder: Path, formats: Sequence[str]) -> list[Path]:
         written.append(path)
 
     if any(f in formats for f in FIGURE_FORMATS) and study.figures:
+        from rigctl.analysis.style import drawing, render
+
         with drawing():
             for name, draw in study.figures.items():
                 rendered = render(draw())

@@ -8,7 +8,8 @@ import typer
 
 #: modules with a function `register(app)`, in the order of the help
 _FAMILIES = (
-    "show", "figures", "pairs", "locus", "modes", "maps", "sensitivity", "motion", "limit_cycle", "studies", "minimal",
+    "show", "figures", "pairs", "locus", "modes", "maps", "sensitivity", "motion", "limit_cycle", "studies",
+    "minimal",
 )  # fmt: skip
 
 

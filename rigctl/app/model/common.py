@@ -7,14 +7,17 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.table import Table as RichTable
 
 from rigctl.core.errors import ConfigError
-from rigctl.model.output import FORMATS, Study, Table, plain, write
+from rigctl.model.formats import FORMATS
+
+if TYPE_CHECKING:
+    from rigctl.model.output import Study, Table
 
 ModelArgument = Annotated[
     Path,
@@ -94,12 +97,16 @@ def finish(
         if tables is None or table.name in tables:
             screen.print(rich_table(table, lines))
     if out is not None:
+        from rigctl.model.output import write
+
         paths = write(study, out, tuple(f.strip() for f in formats.split(",") if f.strip()))
         screen.print(f"{len(paths)} files in {out}: {', '.join(path.name for path in paths)}")
 
 
 def rich_table(table: Table, lines: int | None = _LINES) -> RichTable:
     """A table for the console; its first lines where it is long."""
+    from rigctl.model.output import plain
+
     shown = RichTable(title=table.title, title_justify="left", title_style="bold", header_style="", box=None)
     for column in table.columns:
         numeric = all(isinstance(plain(v), int | float | None) for v in column.values)
@@ -117,6 +124,8 @@ def rich_table(table: Table, lines: int | None = _LINES) -> RichTable:
 
 def cell(value: Any) -> str:
     """A value for people: six significant digits."""
+    from rigctl.model.output import plain
+
     value = plain(value)
     if value is None:
         return "–"

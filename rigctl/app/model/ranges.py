@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from rigctl.core.errors import ConfigError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 RANGE_METAVAR = "NAME:FROM:TO:COUNT"
 #: most values of one range; more is a slip of the keyboard
@@ -58,6 +60,8 @@ def parse_range(text: str, place: str = "range") -> tuple[str, NDArray[np.float6
         raise refuse("a range of COUNT 1 needs FROM equal to TO.")
     if count > 1 and first == last:
         raise refuse("FROM and TO are equal: a range needs an extent.")
+    import numpy as np
+
     return name, np.linspace(first, last, count)
 
 

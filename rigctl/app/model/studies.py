@@ -18,6 +18,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
 from rigctl.app import exit_codes
+from rigctl.app.durations import duration_text
 from rigctl.app.model.common import (
     DEFAULT_FORMATS,
     FormatOption,
@@ -29,7 +30,6 @@ from rigctl.app.model.common import (
     parse_settings,
 )
 from rigctl.app.model.ranges import RANGE_METAVAR, parse_range
-from rigctl.app.progress_view import duration_text
 from rigctl.core.errors import ConfigError
 
 if TYPE_CHECKING:
