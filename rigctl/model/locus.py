@@ -18,6 +18,7 @@ from rigctl.model.locus_figures import Section, course_figure, parameter_label, 
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.linear import LinearModel, ParameterGroup
 from sim_hardware.brake_model.tracking import Flag, Locus, Path, track
+from sim_hardware.brake_model.tracking_band import track_band
 from sim_hardware.brake_model.tracking_events import ModeCoupling, mode_couplings
 
 #: what the paper prints: section 4.2 with Fig. 7, section 5.2 with Fig. 13
@@ -45,6 +46,7 @@ def locus_study(
     values: Mapping[str, float] | None = None,
     *,
     asymmetric: bool = False,
+    band_hz: tuple[float, float] | None = None,
     name: str = "locus",
 ) -> Study:
     """Root locus of a model over a quantity, or over the common relative factor of a parameter group.
@@ -52,6 +54,7 @@ def locus_study(
     Parameters
     ----------
     what, grid, values, asymmetric : see `sim_hardware.brake_model.tracking.track`
+    band_hz : follow only the modes that lie in this band at the start; for large models made elsewhere
     name : stem of the files
 
     Returns
@@ -59,7 +62,9 @@ def locus_study(
     facts: onset, crossings, coupling of modes; tables "crossings", "modes" (start and end of each mode),
     "coupling", "events" and "locus" (every mode at every point); figures "plane" and "course"
     """
-    return study_of(track(model, what, grid, values, asymmetric=asymmetric), name=name)
+    if band_hz is None:
+        return study_of(track(model, what, grid, values, asymmetric=asymmetric), name=name)
+    return study_of(track_band(model, what, grid, band_hz, values, asymmetric=asymmetric), name=name)
 
 
 def study_of(locus: Locus, *, name: str = "locus", title: str = "") -> Study:
@@ -244,6 +249,9 @@ def _facts(locus: Locus, couplings: Sequence[ModeCoupling]) -> dict[str, Any]:
             "coupling_would_be_exact_at": c.exceptional_value,
             "coupling_distance": c.distance,
         }
+    lost = np.flatnonzero(((locus.flags & Flag.LOST) > 0).any(axis=0))
+    if lost.size:
+        facts["modes_that_left_the_band"] = [int(m) + 1 for m in lost]
     if locus.events:
         facts["identity"] = "; ".join(dict.fromkeys(_EVENTS[event.kind] for event in locus.events))
     return facts

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from sim_hardware.brake_model.linear import Array, LinearModel, ParameterGroup
 from sim_hardware.brake_model.tracking_events import crossings_of
-from sim_hardware.brake_model.tracking_locus import Crossing, Event, EventKind, Flag, Locus
+from sim_hardware.brake_model.tracking_locus import Crossing, Event, EventKind, Flag, Locus, checked_grid
 from sim_hardware.brake_model.tracking_nodes import ComplexArray, Match, Node, evaluate, matches
 from sim_hardware.brake_model.tracking_path import Path, Sampler, path_of
 
@@ -72,26 +72,16 @@ def track(
         unknown name, bad grid, or a value that the model refuses
     """
     path = path_of(model, what, values, asymmetric=asymmetric)
-    points = _checked(grid)
+    points = checked_grid(grid)
     if len(model.freedoms) > DENSE_LIMIT:
         raise ValueError(
             f"the model has {len(model.freedoms)} degrees of freedom, more than {DENSE_LIMIT}: "
-            "track it in a frequency band (tracking_band.track_band)"
+            "track the modes of a frequency band (--band HZ HZ; tracking_band.track_band)"
         )
     ascending = bool(points[-1] > points[0])
     upward = points if ascending else points[::-1]
     tracker = _Tracker(Sampler(model, path, float(upward[0]), float(upward[-1])), points, max_halvings)
     return tracker.locus(model.name, path)
-
-
-def _checked(grid: Sequence[float] | Array) -> Array:
-    points = np.array(grid, dtype=float)
-    if points.ndim != 1 or len(points) < 2 or not np.isfinite(points).all():
-        raise ValueError("the grid needs at least two finite values")
-    steps = np.diff(points)
-    if not ((steps > 0).all() or (steps < 0).all()):
-        raise ValueError("the grid must rise or fall strictly")
-    return points
 
 
 @dataclass(slots=True)

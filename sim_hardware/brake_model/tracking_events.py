@@ -41,6 +41,8 @@ def crossings_of(locus: Locus, node: NodeAt) -> tuple[Crossing, ...]:
         for k, m in np.argwhere(signs[:-1] != signs[1:]).tolist():
             if member == 1 and not (_real(values[k, m]) and _real(values[k + 1, m])):
                 continue  # conjugates cross together
+            if not np.isfinite(values[[k, k + 1], m]).all():
+                continue  # a mode that was lost
             crossing = _refined(s, values, k, m, node, limit)
             if crossing is not None:
                 found.append((abs(crossing.value - s[0]), crossing))

@@ -5,6 +5,7 @@ NOT its job: how they are found (`tracking`, `tracking_events`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntFlag
 from typing import Literal
@@ -133,3 +134,20 @@ class Locus:
     def mode_near(self, frequency_hz: float, index: int = 0) -> int:
         """Number of the mode nearest to a frequency at a grid point."""
         return int(np.nanargmin(np.abs(self.frequencies_hz[index] - frequency_hz))) + 1
+
+
+def checked_grid(grid: Sequence[float] | Array) -> Array:
+    """Return a grid as an array (g,).
+
+    Raises
+    ------
+    ValueError
+        fewer than two values, not finite, or not strictly monotonic
+    """
+    points = np.array(grid, dtype=float)
+    if points.ndim != 1 or len(points) < 2 or not np.isfinite(points).all():
+        raise ValueError("the grid needs at least two finite values")
+    steps = np.diff(points)
+    if not ((steps > 0).all() or (steps < 0).all()):
+        raise ValueError("the grid must rise or fall strictly")
+    return points

@@ -124,8 +124,7 @@ def _left(state: Array, values: ComplexArray, right: ComplexArray) -> ComplexArr
 
 @dataclass(slots=True)
 class Match:
-    """How two nodes of one signature match: `order[i]` is the eigenvalue at the end that continues
-    eigenvalue i.
+    """How two nodes match: `order[i]` is the eigenvalue at the end that continues eigenvalue i, -1: none.
 
     `doubtful` (u,): correlation or prediction contradict; `close` (u,): comes near another within the step.
     """
@@ -141,11 +140,11 @@ class Match:
 
 
 def matches(starts: list[Node], ends: list[Node]) -> list[Match]:
-    """Match nodes of one signature, pair by pair."""
+    """Match nodes pair by pair: all starts of one signature, all ends of one; the ends may have more."""
     a, b = (np.stack([node.values for node in side]) for side in (starts, ends))
     da, db = (np.nan_to_num(np.stack([node.rates for node in side])) for side in (starts, ends))
     step = np.array([end.s - start.s for start, end in zip(starts, ends, strict=True)])
-    n_complex, n_real = starts[0].signature
+    (n_complex, n_real), (m_complex, m_real) = starts[0].signature, ends[0].signature
     forward = np.matmul(np.stack([n.left for n in starts]), np.stack([n.right for n in ends]))
     backward = np.matmul(np.stack([n.left for n in ends]), np.stack([n.right for n in starts]))
     correlation = forward * backward.transpose(0, 2, 1)  # X_ij = (w_i^T v'_j)(w'_j^T v_i); rows sum to 1
@@ -159,11 +158,10 @@ def matches(starts: list[Node], ends: list[Node]) -> list[Match]:
         + 1.0
         - np.minimum(np.abs(correlation), 1.0)
     )
-    if n_complex and n_real:
-        cost[:, :n_complex, n_complex:] = cost[:, n_complex:, :n_complex] = _FORBIDDEN
+    if n_real or m_real:
+        cost[:, :n_complex, m_complex:] = cost[:, n_complex:, :m_complex] = _FORBIDDEN
     cost = np.where(np.isfinite(cost), cost, _FORBIDDEN)
     order = _assigned(cost)
-    rows = np.arange(a.shape[1])
     ends_b, ends_db = np.take_along_axis(b, order, 1), np.take_along_axis(db, order, 1)
     # modes that coincide at the end share their space: what counts is the correlation with all of it
     same = np.abs(ends_b[:, :, None] - b[:, None, :]) <= tolerance[:, None, None]
@@ -173,18 +171,20 @@ def matches(starts: list[Node], ends: list[Node]) -> list[Match]:
     zero = (a == 0.0) & (ends_b == 0.0)
     doubtful = ~zero & ~((np.abs(1.0 - like) < _UNLIKE) & (miss < _MISSED * apart))
     close = _approaching(a, da, ends_b, ends_db, step, tolerance)
-    close[:, rows] &= ~zero
+    close &= ~zero
     return [Match(order[k], doubtful[k], close[k]) for k in range(len(starts))]
 
 
 def _assigned(cost: Array) -> NDArray[np.intp]:
-    """Cheapest assignment of each cost matrix (k, u, u): the row minima where they are a permutation."""
+    """Cheapest assignment of each cost matrix (k, u, v): the row minima where they differ; -1: left over."""
     from scipy.optimize import linear_sum_assignment
 
     order = cost.argmin(axis=2)
-    plain = (np.sort(order, axis=1) == np.arange(cost.shape[1])).all(axis=1)
+    plain = (np.diff(np.sort(order, axis=1), axis=1).astype(int) > 0).all(axis=1)
     for k in np.flatnonzero(~plain):
-        order[k] = linear_sum_assignment(cost[k])[1]
+        rows, columns = linear_sum_assignment(cost[k])
+        order[k] = -1
+        order[k, rows] = columns
     return order
 
 

@@ -52,6 +52,12 @@ def locus(
         int | None,
         typer.Option("--figure", metavar="7|13", help="The paper's figure with its numbers beside ours."),
     ] = None,
+    band: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            "--band", metavar="HZ HZ", help="Follow only the modes of this frequency band (large models)."
+        ),
+    ] = None,
     settings: SetOption = None,
     out: OutOption = None,
     formats: FormatOption = DEFAULT_FORMATS,
@@ -91,6 +97,6 @@ def locus(
         if figure is not None:
             study = studies[figure](loaded)
         else:
-            study = locus_study(loaded, group or name, points, values, asymmetric=asymmetric)
+            study = locus_study(loaded, group or name, points, values, asymmetric=asymmetric, band_hz=band)
     shown = ("paper", "crossings", "events", "modes", "coupling")
     finish(study, out, formats, tables=shown)
