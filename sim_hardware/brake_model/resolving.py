@@ -182,13 +182,19 @@ def _predict(system: EigenSystem, change: Matrices) -> ComplexArray:
 
 def _predict_batch(system: EigenSystem, changes: MatrixBatch) -> ComplexArray:
     """As `_predict` for all modifications at once, (v, m)."""
-    n = system.right.shape[0]
-    products = (system.left[:, None, :] * system.right[None, :, :]).reshape(n * n, -1)
-    powers = np.ascontiguousarray(
-        np.concatenate([products, products * system.values, products * system.values**2])
-    )
-    forces = np.hstack([m.reshape(-1, n * n) for m in (changes.stiffness, changes.damping, changes.mass)])
-    return _moved(system, (forces @ powers.view(float)).view(complex))
+    v, values = system.right, system.values
+    both = np.ascontiguousarray(
+        np.hstack([v.real, v.imag])
+    )  # small real products: no threads, no complex copies
+
+    def applied(change: NDArray[np.float64]) -> ComplexArray:
+        parts = change @ both
+        return parts[:, :, : values.size] + 1j * parts[:, :, values.size :]
+
+    force = applied(changes.stiffness) + values * applied(changes.damping)
+    if changes.mass.any():
+        force += values**2 * applied(changes.mass)
+    return _moved(system, np.sum(system.left * force, axis=1))
 
 
 def _moved(system: EigenSystem, change: ComplexArray) -> ComplexArray:

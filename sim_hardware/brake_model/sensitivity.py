@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
+from sim_hardware.brake_model.brake_gradients import numerators
 from sim_hardware.brake_model.linear import LinearModel, Matrices, known, value_of
+from sim_hardware.brake_model.parametric import LinearBrake
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -229,7 +231,7 @@ def sparse_matrices(matrices: Matrices) -> Matrices:
 
 
 def sensitivities(system: EigenSystem, changes: Derivatives) -> Sensitivities:
-    """Eq 24 for all quantities and all eigenvalues of a system at once."""
+    """Eq 24 for all quantities and all eigenvalues of a system at once, from derivatives of the matrices."""
     v, w, values = system.right, system.left, system.values
     if isinstance(changes.mass, np.ndarray):
         n = v.shape[0]
@@ -244,11 +246,28 @@ def sensitivities(system: EigenSystem, changes: Derivatives) -> Sensitivities:
             np.array([np.sum(w * (d @ v), axis=0) for d in several])
             for several in (changes.mass, changes.damping, changes.stiffness)
         )
-    change = values**2 * inertia + values * damping + stiffness
-    regular = system.regular
-    absolute = np.full(change.shape, complex(np.nan, np.nan))
-    absolute[:, regular] = -change[:, regular] / system.slope[regular]  # eq 24
-    return Sensitivities(changes.names, changes.units, changes.amounts, system, absolute)
+    numerator = values**2 * inertia + values * damping + stiffness
+    return Sensitivities(changes.names, changes.units, changes.amounts, system, _quotient(system, numerator))
+
+
+def sensitivities_of(
+    model: LinearModel, system: EigenSystem, names: Sequence[str] | None, values: Mapping[str, float] | None
+) -> Sensitivities:
+    """Eq 24 for quantities of a model whose eigenvalues are known; our brake by its rank-one structure.
+
+    Raises
+    ------
+    KeyError, ValueError
+        as `LinearModel.derivative`
+    """
+    if not isinstance(model, LinearBrake):
+        return sensitivities(system, derivatives(model, names, values))
+    chosen = parameter_names(model) if names is None else tuple(names)
+    quantities = [known(model, name) for name in chosen]
+    amounts = np.array([value_of(model, name, values) for name in chosen])
+    numerator = numerators(model, chosen, values, system.values, system.left, system.right)
+    units = tuple(quantity.unit for quantity in quantities)
+    return Sensitivities(chosen, units, amounts, system, _quotient(system, numerator))
 
 
 def eigen_sensitivities(
@@ -268,7 +287,14 @@ def eigen_sensitivities(
     numpy.linalg.LinAlgError
         M is singular
     """
-    return sensitivities(eigen_system(model.matrices(values)), derivatives(model, names, values))
+    return sensitivities_of(model, eigen_system(model.matrices(values)), names, values)
+
+
+def _quotient(system: EigenSystem, numerator: ComplexArray) -> ComplexArray:
+    regular = system.regular
+    found = np.full(numerator.shape, complex(np.nan, np.nan))
+    found[:, regular] = -numerator[:, regular] / system.slope[regular]  # eq 24
+    return found
 
 
 def _real_times_complex(real: Array, products: ComplexArray) -> ComplexArray:

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_hardware.brake_model.assembly import load_brake
+from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, ParameterGroup, value_of
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.sensitivity import (
@@ -23,6 +23,7 @@ from sim_hardware.brake_model.sensitivity import (
     parameter_names,
     sensitivities,
 )
+from sim_hardware.brake_model.spec import BrakeSpec
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 MODEL = load_brake(BRAKES / "model.toml")
@@ -109,6 +110,31 @@ def test_eq_24_agrees_with_central_differences_on_scattered_brakes(factors, mu, 
     for name, ours in zip(found.names, found.per_percent, strict=True):
         peer = central_difference(model, name, point)
         assert np.abs(ours - peer)[clear].max() <= 1e-3 + 1e-4 * np.abs(peer).max(), name
+
+
+@pytest.mark.parametrize("file", ["basic.toml", "plant.toml", "turned"])
+def test_rank_one_form_equals_the_matrices_form_for_every_quantity(file: str) -> None:
+    brake = MODEL if file == "turned" else load_brake(BRAKES / file)
+    if file == "turned":
+        data = brake.spec.model_dump()
+        data["parameters"]["tilt"] = {"value": 0.2, "unit": "rad", "origin": "test"}
+        data["parameters"]["lever"] = {"value": 2.0, "unit": "1", "origin": "test"}
+        for coupling in data["couplings"]:
+            if coupling["name"] in {"piston_l", "abutment_ot"}:
+                coupling["angle"] = "tilt"
+        data["bodies"][0]["mass"] = "m_cal * lever / 2"
+        brake = Brake(BrakeSpec.model_validate(data))
+    model = LinearBrake(brake)
+    for point in (
+        {},
+        {"pressure": 9.0, "mu": 0.7, "slope": 0.03, "x_pis": 0.02, "inner_pad.piston_l.x": -0.01},
+    ):
+        system = eigen_system(model.matrices(point))
+        names = parameter_names(model, places=True)
+        ours = eigen_sensitivities(model, names, point).absolute
+        matrices = sensitivities(system, derivatives(model, names, point)).absolute
+        scale = np.abs(matrices).max(axis=1, keepdims=True)
+        assert (np.abs(ours - matrices) <= 1e-9 * scale).all()
 
 
 def test_pencil_form_equals_the_state_matrix_form_of_the_paper() -> None:
