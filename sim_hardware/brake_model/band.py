@@ -151,12 +151,13 @@ def _sparse(pencil: Pencil, band: tuple[float, float], damping_max: float) -> Ei
     low, high = (2.0 * math.pi * f for f in band)
     width = damping_max * high
     margin = 0.02 * (high - low)
-    found = Found()
-    mirror = None if _symmetric(pencil) else Found()
+    zero = ZERO * pencil.scale
+    found = Found(zero)
+    mirror = None if _symmetric(pencil) else Found(zero)
     bottom, top = (low - margin if low > 0.0 else -margin), high + margin
     for attempt in range(3):
         cover(pencil, bottom, top, width, found, mirror, seed=7 * attempt)
-        known = _with_conjugates(np.array(found.values))
+        known = _with_conjugates(np.array(found.values), zero)
         edges = _free(known.imag, bottom, low), _free(known.imag, high, top)
         corners = (
             complex(-_free(-known.real, 0.95 * width, width), edges[0]),
@@ -174,8 +175,8 @@ def _sparse(pencil: Pencil, band: tuple[float, float], damping_max: float) -> Ei
         None: f"{discs}; not proven: the count by the argument principle did not end",
     }[complete]
     values: Complex = np.array(found.values, dtype=complex)
-    chosen = np.flatnonzero((values.imag >= -ZERO * pencil.scale) & _within(values, band))
-    values[np.abs(values) <= ZERO * pencil.scale] = 0.0
+    chosen = np.flatnonzero((values.imag >= -zero) & _within(values, band))
+    values[np.abs(values) <= zero] = 0.0
     values = np.where(np.abs(values.imag) <= 1e-9 * np.abs(values), values.real, values)
     chosen = chosen[(values[chosen].imag >= 0.0)]
     right = (
@@ -234,11 +235,11 @@ def _symmetric(pencil: Pencil) -> bool:
     return all(abs(part - part.T).max() <= 1e-14 * abs(part).max() for part in parts)
 
 
-def _with_conjugates(values: Complex) -> Complex:
+def _with_conjugates(values: Complex, zero: float) -> Complex:
     """Values and the conjugates that are not among them."""
     known = list(values)
     for value in values:
-        if min(abs(other - value.conjugate()) for other in known) > 1e-6 * abs(value):
+        if min(abs(other - value.conjugate()) for other in known) > max(1e-6 * abs(value), 2.0 * zero):
             known.append(value.conjugate())
     return np.array(known)
 

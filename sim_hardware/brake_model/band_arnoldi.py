@@ -35,6 +35,7 @@ _MOST_SHIFTS = 400
 class Found:
     """Eigenvalues found so far with their vectors and the covered discs."""
 
+    zero: float = 0.0  # eigenvalues below it are those of free motion: one value
     values: list[complex] = field(default_factory=list)
     right: list[Complex] = field(default_factory=list)
     shifts: list[tuple[complex, float]] = field(default_factory=list)
@@ -50,7 +51,9 @@ class Found:
         old = np.array(self.values)
         for value, vector in zip(values, vectors.T, strict=True):
             near = (
-                np.flatnonzero(np.abs(old - value) <= _SAME * abs(value)) if known else np.zeros(0, dtype=int)
+                np.flatnonzero(np.abs(old - value) <= max(_SAME * abs(value), 2.0 * self.zero))
+                if known
+                else np.zeros(0, dtype=int)
             )
             free = [int(i) for i in near if int(i) not in taken]
             if free and not _independent(vector, [self.right[i] for i in near]):

@@ -20,6 +20,8 @@ PA_PER_BAR = 1e5
 
 #: relative imaginary part below which an eigenvalue counts as real
 _REAL = 1e-9
+#: real part that rounding makes of none, as part of the largest eigenvalue
+_NO_GROWTH = 1e-11
 #: width to which an onset is refined, relative to the range
 _ONSET_TOLERANCE = 1e-10
 
@@ -32,7 +34,8 @@ class EigenPair:
     ----------
     frequency_hz : imaginary part / 2 pi
     damping_ratio : -Re / |lambda|; negative: unstable
-    real_part_1_s : growth rate of the amplitude
+    real_part_1_s : growth rate of the amplitude; exactly 0 where it is rounding only (no damping, free
+        motion)
     """
 
     frequency_hz: float
@@ -85,9 +88,16 @@ def eigen_pairs(
     ----------
     mu, slope_s_m : coefficient of friction and falling slope k (s/m); the brake file's where None
     pressure_bar : brake pressure; acts only with k > 0
+
+    Raises
+    ------
+    ValueError
+        an argument is negative or not finite, or so large that the matrices overflow
     """
-    matrix = brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR)
-    return _pairs(eigenvalues(matrix))
+    _check(mu=mu, slope_s_m=slope_s_m, pressure_bar=pressure_bar)
+    values = eigenvalues(_finite(brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR)))
+    values.real[np.abs(values.real) <= _NO_GROWTH * np.abs(values).max(initial=0.0)] = 0.0
+    return _pairs(values)
 
 
 def onset_pressure(
@@ -102,7 +112,13 @@ def onset_pressure(
     range.
 
     The range from 0 is scanned in `steps` steps and the first change of sign refined.
+
+    Raises
+    ------
+    ValueError
+        as `eigen_pairs`; no positive range, no steps
     """
+    _check(mu=mu, slope_s_m=slope_s_m)
     return _first_crossing(
         lambda pressure: brake.state_matrix(mu, slope_s_m, pressure * PA_PER_BAR), pressure_max_bar, steps
     )
@@ -116,7 +132,14 @@ def onset_mu(
     *,
     steps: int = 100,
 ) -> Onset | None:
-    """Return the lowest coefficient of friction at which a pair becomes unstable, or None up to `mu_max`."""
+    """Return the lowest coefficient of friction at which a pair becomes unstable, or None up to `mu_max`.
+
+    Raises
+    ------
+    ValueError
+        as `onset_pressure`
+    """
+    _check(slope_s_m=slope_s_m, pressure_bar=pressure_bar)
     return _first_crossing(
         lambda mu: brake.state_matrix(mu, slope_s_m, pressure_bar * PA_PER_BAR), mu_max, steps
     )
@@ -144,6 +167,18 @@ def predict(
     )
 
 
+def _check(**values: float | None) -> None:
+    for name, value in values.items():
+        if value is not None and not (math.isfinite(value) and value >= 0.0):
+            raise ValueError(f"{name} is {value!r}; give a finite number that is not negative")
+
+
+def _finite(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+    if not np.isfinite(matrices).all():
+        raise ValueError("the matrices overflow; give smaller values of friction, slope or pressure")
+    return matrices
+
+
 def _pairs(values: NDArray[np.complex128]) -> tuple[EigenPair, ...]:
     kept = values[values.imag >= -_REAL * np.abs(values)]
     pairs = [
@@ -163,15 +198,16 @@ def _first_crossing(matrix: Callable[[float], NDArray[np.float64]], top: float, 
     if steps < 1:
         raise ValueError(f"steps is {steps!r}; give at least 1")
     grid = np.linspace(0.0, top, steps + 1)
-    growth = largest_growth(np.stack([matrix(float(value)) for value in grid]))
-    unstable = np.flatnonzero(growth > 0.0)
+    matrices = _finite(np.stack([matrix(float(value)) for value in grid]))
+    rounding = _NO_GROWTH * float(np.abs(np.linalg.eigvals(matrices[0])).max(initial=0.0))
+    unstable = np.flatnonzero(largest_growth(matrices) > rounding)
     if unstable.size == 0:
         return None
     first = int(unstable[0])
     below, value = float(grid[max(first - 1, 0)]), float(grid[first])
     while value - below > _ONSET_TOLERANCE * top:  # bisection: safe where the leading pair changes
         middle = 0.5 * (below + value)
-        if largest_growth(matrix(middle)[None])[0] > 0.0:
+        if largest_growth(matrix(middle)[None])[0] > rounding:
             value = middle
         else:
             below = middle
