@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from rigctl.model.motion_figures import forces_figure, motion_figure
 from rigctl.model.output import Column, Study, Table
@@ -136,7 +137,12 @@ def simulation_study(
         )
     mu = brake.mu if mu is None else mu
     slope = brake.slope_s_m if slope_s_m is None else slope_s_m
-    chosen = friction_law(law, mu, slope, saturation_m_s)
+    try:
+        chosen = friction_law(law, mu, slope, saturation_m_s)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = first["loc"][-1] if first["loc"] else law
+        raise ValueError(f"friction law: {key} is {first['input']!r}: {first['msg']}") from error
     slip_m_s = 2.0 * math.pi * speed_rpm / 60.0 * brake.effective_radius_m
     point = WorkingPoint(brake.pad_force_n(pressure_bar * PA_PER_BAR), slip_m_s, chosen)
     start = least_stable_start(brake, mu, chosen.slope_s_m, pressure_bar * PA_PER_BAR, start_m_s)

@@ -33,6 +33,8 @@ _LEFT = 0.1
 _SAMPLES_PER_PERIOD = 16
 _LEAST_SAMPLES = 400
 _REAL = 1e-9
+#: as `friction` has it
+_LARGEST_MU = 2.0
 
 
 def linear_energy(brake: Brake, states: Array, mu: float | None = None) -> Array:
@@ -189,6 +191,8 @@ def decays(
     mu = brake.mu if mu is None else mu
     if not (math.isfinite(energy_nm) and energy_nm > 0.0 and math.isfinite(windows) and windows > 0.0):
         raise ValueError(f"energy {energy_nm!r} N m, windows {windows!r}: give positive, finite numbers")
+    if not 0.0 <= mu <= _LARGEST_MU:
+        raise ValueError(f"mu is {mu!r}: give a coefficient of friction from 0 to {_LARGEST_MU:g}")
     point = WorkingPoint(0.0, 1.0, ConstantFriction(mu_mean=mu))
     variants = [with_cubic_contacts(brake, doubled_at_m=doubled_at_m, strength=s) for s in (0.0, *strengths)]
     rows = np.array([c.side * c.row_y for c in brake.contacts])

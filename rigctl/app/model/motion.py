@@ -74,7 +74,7 @@ def simulate(
 
     if law not in LAWS:
         raise ConfigError(
-            "no such friction law.", place="--law", value=law, remedy=f"Known: {', '.join(LAWS)}."
+            "no such friction law.", place=f"--law {law}", value=law, remedy=f"Known: {', '.join(LAWS)}."
         )
     loaded = read_brake(brake)
     with study_errors(str(brake)):
@@ -121,7 +121,10 @@ def decay(
         factors = tuple(float(text) for text in strengths.split(","))
     except ValueError as error:
         raise ConfigError(
-            "is not a list of numbers.", place="--strengths", value=strengths, remedy="For example 1,10,100."
+            "is not a list of numbers.",
+            place=f"--strengths {strengths}",
+            value=strengths,
+            remedy="For example 1,10,100.",
         ) from error
     loaded = read_brake(brake)
     with study_errors(str(brake)):
