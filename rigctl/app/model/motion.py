@@ -125,7 +125,7 @@ def decay(
             place=f"--strengths {strengths}",
             value=strengths,
             remedy="For example 1,10,100.",
-        ) from error
+        ) from error  # fmt: skip
     loaded = read_brake(brake)
     with study_errors(str(brake)):
         study = decay_study(
