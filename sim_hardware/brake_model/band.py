@@ -168,7 +168,7 @@ def _sparse(pencil: Pencil, band: tuple[float, float], damping_max: float) -> Ei
             break
     complete = None if lacking is None else lacking == 0
     count = len(found.shifts)
-    discs = f"{count} shift{'s' * (count > 1)} cover the band up to a damping ratio of {damping_max:g}"
+    discs = f"{count} {'shifts cover' if count > 1 else 'shift covers'} the band up to a damping ratio of {damping_max:g}"
     evidence = {
         True: f"{discs}; the argument principle counts as many eigenvalues as were found",
         False: f"{discs}; the argument principle counts {lacking} more than were found",
