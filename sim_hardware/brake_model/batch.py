@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim_hardware.brake_model import batch_kernels, contact
+from sim_hardware.brake_model import batch_careful, batch_kernels, contact
 from sim_hardware.brake_model import batch_tables as layout
 from sim_hardware.brake_model.assembly import Array, Brake
 from sim_hardware.brake_model.batch_statistics import Statistics, StatisticsOf
@@ -122,7 +122,7 @@ class BatchIntegrator:
         self._tiles = self._make_tiles(tables, _TILE_OWN if own else _TILE_SHARED)
         self._groups = sum(len(tile.state) for tile in self._tiles)
         self._work = layout.aligned(
-            (batch_kernels.WORK_ROWS + batch_kernels.WORK_ROWS_PER_MODE * self._modes, layout.LANES)
+            (batch_careful.WORK_ROWS + batch_careful.WORK_ROWS_PER_MODE * self._modes, layout.LANES)
         )
         self._fresh = np.zeros(self.lanes, dtype=bool)
         self._ended = 0  # internal steps of the last call: where the law is to be taken
@@ -326,12 +326,19 @@ class BatchIntegrator:
                 f"excitation_n has the shape {given.shape}; give ({n_out}, {self.n_pads}) for all lanes or "
                 f"({n_out}, {self.lanes}, {self.n_pads})"
             )
-        lanes = np.zeros((n_out, self._groups * layout.LANES, self.n_pads))
-        lanes[:, : self.lanes] = given
-        lanes[:, np.flatnonzero(self.lost)] = 0.0
-        return np.ascontiguousarray(
-            lanes.reshape(n_out, self._groups, layout.LANES, self.n_pads).transpose(0, 1, 3, 2)
-        )
+        made = np.empty((n_out, self._groups, self.n_pads, layout.LANES))
+        if given.shape[1] == 1:
+            made[...] = given[:, :, :, None]
+        else:
+            whole, rest = divmod(self.lanes, layout.LANES)
+            first = given[:, : self.lanes - rest].reshape(n_out, whole, layout.LANES, self.n_pads)
+            made[:, :whole] = first.transpose(0, 1, 3, 2)
+            if rest:
+                made[:, whole] = 0.0
+                made[:, whole, :, :rest] = given[:, self.lanes - rest :].transpose(0, 2, 1)
+        groups, slots = self._slots(self.lost)
+        made[:, groups, :, slots] = 0.0
+        return made
 
     def _by_lanes(self, out: Array) -> Array:
         return out.reshape(*out.shape[:2], self._groups * layout.LANES)[:, :, : self.lanes].transpose(0, 2, 1)

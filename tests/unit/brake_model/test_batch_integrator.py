@@ -233,3 +233,22 @@ def test_brakes_that_do_not_fit_are_refused_with_the_remedy() -> None:
     )
     with pytest.raises(ValueError, match=r"3 friction groups.*SquealIntegrator"):
         BatchIntegrator(Brake(changed), 2)
+
+
+def test_several_sums_of_outputs_and_the_first_columns_only() -> None:
+    sums = np.array([[0.5, 20.0, -1e-3], [0.0, 1.0, 0.0]])
+    every, summed, first = (
+        BatchIntegrator(PLANT, 3, outputs=NAMES),
+        BatchIntegrator(PLANT, 3, outputs=NAMES, weights=sums),
+        BatchIntegrator(PLANT, 3, outputs=NAMES),
+    )
+    for batch in (every, summed, first):
+        batch.states = starts(3)
+    y = every.advance(200, **SQUEALING)
+    np.testing.assert_allclose(
+        summed.advance(200, **SQUEALING), y @ sums.T, rtol=0.0, atol=1e-12 * np.abs(y).max()
+    )
+    np.testing.assert_array_equal(first.advance(200, **SQUEALING, columns=2), y[:, :, :2])
+    assert first.observe(10, **SQUEALING, columns=1).rms.shape == (3, 1)
+    with pytest.raises(ValueError, match="columns"):
+        first.advance(10, **SQUEALING, columns=4)
