@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from sim_hardware.brake_model.eigen_systems import eigen_system
 from sim_hardware.brake_model.linear import LinearModel, known
-from sim_hardware.brake_model.sensitivity import derivatives, eigen_system, sensitivities
+from sim_hardware.brake_model.sensitivity import sensitivities_of
 
 Array = NDArray[np.float64]
 
@@ -142,7 +143,7 @@ def onset_gradient(
     critical = int(np.argmax(upper))
     if system.reasons[critical]:
         raise ValueError(f"{quantity} = {onset:g}: the critical eigenvalue {system.reasons[critical]}")
-    rate = sensitivities(system, derivatives(model, (quantity, *names), at)).absolute[:, critical]
+    rate = sensitivities_of(model, system, (quantity, *names), at).absolute[:, critical]
     along, across = rate[0], rate[1:]
     if along.real == 0.0:
         raise ValueError(f"{quantity} = {onset:g}: the critical eigenvalue does not move with {quantity}")

@@ -236,20 +236,21 @@ class _Problem:
         """Prediction (d,) and gradients (d + k, k) of the deviations at a z that squeals."""
         here = predict(self._model, self._chosen, z * self._prior, self._measured, self._base)
         assert here is not None
-        slopes = gradient(self._model, self._chosen, z * self._prior, here[0], self._measured, self._base)
-        return here, np.vstack([slopes * self._prior / self._measured.sigma[:, None], np.eye(z.size)])
+        return here, self._jacobian(z, here)
 
-    def cost(self, z: Array) -> float:
-        """Infinite where the model does not squeal or is impossible."""
-        there = _tried(self._model, self._chosen, z * self._prior, self._measured, self._base)
-        return np.inf if there is None else _cost(there, z * self._prior, self._measured, self._prior)
+    def _jacobian(self, z: Array, here: Array) -> Array:
+        slopes = gradient(self._model, self._chosen, z * self._prior, here[0], self._measured, self._base)
+        return np.vstack([slopes * self._prior / self._measured.sigma[:, None], np.eye(z.size)])
+
+    def _cost(self, z: Array, here: Array) -> float:
+        return _cost(here, z * self._prior, self._measured, self._prior)
 
     def gauss_newton(self, z: Array) -> tuple[Array, int, bool]:
         """Few, long steps; damped by Levenberg, Marquardt and Nielsen. Ends where curvature makes them
         useless.
         """
-        cost, damping, growth = self.cost(z), 1e-3, 2.0
         here, jacobian = self.point(z)
+        cost, damping, growth = self._cost(z, here), 1e-3, 2.0
         for iteration in range(_GAUSS_NEWTON):
             misses = np.concatenate([(here - self._measured.data) / self._measured.sigma, z])
             normal, slope = jacobian.T @ jacobian, jacobian.T @ misses
@@ -257,23 +258,25 @@ class _Problem:
                 return z, iteration, True
             weight = damping * np.diagonal(normal)
             step = -np.linalg.solve(normal + np.diag(weight), slope)
-            new_cost = self.cost(z + step)
+            there = _tried(self._model, self._chosen, (z + step) * self._prior, self._measured, self._base)
+            new_cost = np.inf if there is None else self._cost(z + step, there)
             gain = (cost - new_cost) / (0.5 * float(step @ (weight * step - slope)))
-            if not gain > 0.0:  # beyond the linearisation, or another pair is first: a shorter step
+            if there is None or not gain > 0.0:  # beyond the linearisation, or another pair is first: shorter
                 damping, growth = damping * growth, 2.0 * growth
                 continue
             damping, growth = damping * max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3), 2.0  # Nielsen's rule
-            z, cost = z + step, new_cost
-            here, jacobian = self.point(z)
+            z, here, cost = z + step, there, new_cost
+            jacobian = self._jacobian(z, here)
         return z, _GAUSS_NEWTON, False
 
     def quasi_newton(self, z: Array) -> tuple[Array, int, bool]:
         """BFGS: learns the curvature of the frequency where two pairs veer, which Gauss-Newton leaves out."""
 
         def function(z: Array) -> tuple[float, Array]:
-            if not np.isfinite(self.cost(z)):
+            here = _tried(self._model, self._chosen, z * self._prior, self._measured, self._base)
+            if here is None:
                 return _IMPOSSIBLE, np.zeros(z.size)
-            here, jacobian = self.point(z)
+            jacobian = self._jacobian(z, here)
             misses = np.concatenate([(here - self._measured.data) / self._measured.sigma, z])
             return 0.5 * float(misses @ misses), jacobian.T @ misses
 

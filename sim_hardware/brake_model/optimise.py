@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
+from sim_hardware.brake_model.eigen_systems import EigenSystem, eigen_system
 from sim_hardware.brake_model.linear import LinearModel, value_of
 from sim_hardware.brake_model.scatter import Variable
-from sim_hardware.brake_model.sensitivity import EigenSystem, derivatives, eigen_system, sensitivities
+from sim_hardware.brake_model.sensitivity import sensitivities_of
 
 Array = NDArray[np.float64]
 
@@ -276,7 +277,10 @@ def _watched(
     all_ratios, all_slopes = [], []
     for point in points:
         at = {**values, **point}
-        system = eigen_system(model.matrices(at))
+        with np.errstate(
+            over="ignore", invalid="ignore"
+        ):  # rigid-body motions have vectors beyond all numbers
+            system = eigen_system(model.matrices(at))
         ratios = _damping_ratios(system)
         least = np.argsort(ratios, kind="stable")[:_WATCHED]
         slopes = _ratio_slopes(model, system, names, at)[:, least]
@@ -300,9 +304,10 @@ def _ratio_slopes(
     """d(-Re / |lambda|) / d ln x, (k, m); 0 where eq 24 gives no number: SLSQP then steps by the other
     modes.
     """
-    found = sensitivities(system, derivatives(model, names, at))
+    found = sensitivities_of(model, system, names, at)
     rate = found.absolute * found.amounts[:, None]
     value = system.values
     size = np.maximum(np.abs(value), np.finfo(float).tiny)
     growth = (value.conj() * rate).real / size  # d |lambda|
-    return np.nan_to_num(-rate.real / size + value.real * growth / size**2)
+    slopes = -rate.real / size + value.real * growth / size**2
+    return np.nan_to_num(slopes, nan=0.0, posinf=0.0, neginf=0.0)
