@@ -254,7 +254,6 @@ class Walker:
         motion = LinearSliding(
             delta_1_s=0.5 * damping / belt.mass_kg,
             w2_1_s2=belt.stiffness_n_m / belt.mass_kg,
-            force_m_s2=push / belt.mass_kg,
             position_m=self.position_m,
             velocity_m_s=self.velocity_m_s,
             acceleration_m_s2=acceleration,

@@ -51,18 +51,17 @@ class Sticking:
 
 @dataclass(frozen=True, slots=True)
 class LinearSliding:
-    """x'' + 2 delta x' + w2 x = force, closed solution.
+    """x'' + 2 delta x' + w2 x = constant, closed solution.
 
     Attributes
     ----------
-    delta_1_s, w2_1_s2, force_m_s2 : coefficients; delta may be negative, w2 may be 0
+    delta_1_s, w2_1_s2 : coefficients; delta may be negative, w2 may be 0
     position_m, velocity_m_s, acceleration_m_s2 : at t = 0. The acceleration is given apart, because it is
         exactly 0 where a continuous law lets go, which subtraction of forces would not give
     """
 
     delta_1_s: float
     w2_1_s2: float
-    force_m_s2: float
     position_m: float
     velocity_m_s: float
     acceleration_m_s2: float
@@ -71,24 +70,33 @@ class LinearSliding:
         """Positions and velocities at any times >= 0."""
         t = np.asarray(times_s, dtype=float)
         cosine, sine = self._basis(t)
-        if self.w2_1_s2 > 0.0:
-            rest = self.force_m_s2 / self.w2_1_s2
-            position = rest + (self.position_m - rest) * cosine + self.velocity_m_s * sine
-        else:
-            position = self.position_m + self.velocity_m_s * sine + self.force_m_s2 * self._double_integral(t)
+        integral = self._integral_of_sine(t, cosine)
+        position = (
+            self.position_m
+            + self.velocity_m_s * (sine + 2.0 * self.delta_1_s * integral)
+            + self.acceleration_m_s2 * integral
+        )
         return position, self.velocity_m_s * cosine + self.acceleration_m_s2 * sine
 
     def velocity(self, time_s: float) -> float:
-        """Velocity at one time."""
-        return float(self.at(np.array(time_s))[1])
+        """Velocity at one time: the formula of `at` for a number, as events are searched with it."""
+        delta, t = self.delta_1_s, time_s
+        self._check_growth(t)
+        square = delta**2 - self.w2_1_s2
+        if square < 0.0:
+            omega = math.sqrt(-square)
+            decay = math.exp(-delta * t)
+            sine = decay * math.sin(omega * t) / omega
+            cosine = decay * math.cos(omega * t) + delta * sine
+        else:
+            sigma, slow = math.sqrt(square), math.exp(-self._slowest_1_s() * t)
+            sine = slow * (-math.expm1(-2.0 * sigma * t) / (2.0 * sigma) if sigma > 0.0 else t)
+            cosine = 0.5 * slow * (1.0 + math.exp(-2.0 * sigma * t)) + delta * sine
+        return self.velocity_m_s * cosine + self.acceleration_m_s2 * sine
 
     def _basis(self, t: Array) -> tuple[Array, Array]:
         """Solutions of u'' + 2 delta u' + w2 u = 0 with (u, u') = (1, 0) and (0, 1) at t = 0."""
-        if abs(self.delta_1_s) * float(np.max(t, initial=0.0)) > _MAX_GROWTH and self.delta_1_s < 0.0:
-            raise ValueError(
-                f"damping of the sliding phase = {2.0 * self.delta_1_s:g} 1/s: over {float(np.max(t)):g} s "
-                "the motion grows beyond all numbers. Ask for a shorter time or a smaller slope"
-            )
+        self._check_growth(float(np.max(t, initial=0.0)))
         square = self.delta_1_s**2 - self.w2_1_s2
         if square < 0.0:
             omega = math.sqrt(-square)
@@ -97,17 +105,42 @@ class LinearSliding:
             return decay * np.cos(omega * t) + self.delta_1_s * sine, sine
         sigma = math.sqrt(square)
         # sinh(sigma t) exp(-delta t) without differences of near numbers, at any sigma down to 0
-        slowest = self.w2_1_s2 / (self.delta_1_s + sigma) if self.delta_1_s > 0.0 else self.delta_1_s - sigma
-        slow, closing = np.exp(-slowest * t), np.exp(-2.0 * sigma * t)
+        slow, closing = np.exp(-self._slowest_1_s() * t), np.exp(-2.0 * sigma * t)
         sine = slow * (-np.expm1(-2.0 * sigma * t) / (2.0 * sigma) if sigma > 0.0 else t)
         return 0.5 * slow * (1.0 + closing) + self.delta_1_s * sine, sine
 
-    def _double_integral(self, t: Array) -> Array:
-        """Response to a unit acceleration where w2 = 0."""
-        z = 2.0 * self.delta_1_s * t
-        small = np.abs(z) < 1e-4
-        safe = np.where(small, 1.0, z)
-        return t**2 * np.where(small, 0.5 - z / 6.0 + z**2 / 24.0, (np.expm1(-safe) + safe) / safe**2)
+    def _slowest_1_s(self) -> float:
+        """Rate of the slower decay (the faster growth) where the motion does not vibrate."""
+        sigma = math.sqrt(max(0.0, self.delta_1_s**2 - self.w2_1_s2))
+        return self.w2_1_s2 / (self.delta_1_s + sigma) if self.delta_1_s > 0.0 else self.delta_1_s - sigma
+
+    def _check_growth(self, time_s: float) -> None:
+        if self.delta_1_s < 0.0 and -self._slowest_1_s() * time_s > _MAX_GROWTH:
+            raise ValueError(
+                f"damping of the sliding phase = {2.0 * self.delta_1_s:g} 1/s: over {time_s:g} s "
+                "the motion grows beyond all numbers. Ask for a shorter time or a smaller slope"
+            )
+
+    def _integral_of_sine(self, t: Array, cosine: Array) -> Array:
+        """Integral of the second basis solution from 0: the answer to a unit acceleration."""
+        delta, w2 = self.delta_1_s, self.w2_1_s2
+        small = (abs(delta) * t < 0.1) & (w2 * t**2 < 0.01)
+        series, previous, term = 0.5 * t**2, np.zeros_like(t), 0.5 * t**2
+        for n in range(1, 11):
+            bracket = 2.0 * delta * (n + 1) * t * term + w2 * t**2 * previous
+            previous, term = term, -bracket / ((n + 2) * (n + 1))
+            series = series + term
+        if np.all(small):
+            return series
+        if w2 > 0.1 * delta**2:
+            return np.where(small, series, (1.0 - cosine) / w2)
+        far = -delta - math.copysign(math.sqrt(delta**2 - w2), delta)
+        near = w2 / far
+
+        def grown(root: float) -> Array:
+            return np.expm1(root * t) / root if root != 0.0 else t
+
+        return np.where(small, series, (grown(near) - grown(far)) / (near - far))
 
     def _extrema(self, limit_s: float) -> Iterator[float]:
         """Times > 0 of the extrema of the velocity, up to `limit_s`, then `limit_s`."""

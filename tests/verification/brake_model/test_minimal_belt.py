@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 from sim_hardware.brake_model.minimal.belt import BeltOscillator
 from sim_hardware.brake_model.minimal.cycles import (
@@ -28,6 +29,7 @@ from sim_hardware.brake_model.minimal.laws import (
     LinearFallingLaw,
 )
 from sim_hardware.brake_model.minimal.motion import simulate
+from sim_hardware.brake_model.minimal.phases import LinearSliding
 
 COULOMB = CoulombLaw(mu_static=0.5, mu_dynamic=0.4)
 FALLING = LinearFallingLaw(mu_static=0.5, slope_s_m=0.6)
@@ -120,6 +122,19 @@ def test_motion_agrees_with_a_plain_integration_between_events(law) -> None:
         assert phase.end == pytest.approx(tuple(peer.y[:, -1]), abs=2e-7)
         inner = phase.motion.at(np.linspace(0.0, phase.duration_s, 200)[1:-1])[1]
         assert np.all(sign * (0.3 - inner) > -1e-9)  # no crossing was missed
+
+
+@settings(max_examples=40, deadline=None)
+@given(delta=st.floats(-3.0, 3.0), w2=st.sampled_from([0.0, 1e-12, 0.5, 1.0, 4.0]), t=st.floats(0.0, 20.0))
+def test_closed_solution_solves_the_equation(delta, w2, t) -> None:
+    """Against the matrix exponential: vibrating, critical, creeping, growing, without a spring."""
+    motion = LinearSliding(delta, w2, 0.3, -0.2, 0.7 + 0.4 * delta - 0.3 * w2)
+    matrix = np.array([[0.0, 1.0, 0.0], [-w2, -2.0 * delta, 0.7], [0.0, 0.0, 0.0]])
+    expected = expm(matrix * t) @ [0.3, -0.2, 1.0]
+    x, v = motion.at(np.array([t]))
+    size = 1.0 + np.abs(expected).max()
+    assert [x[0], v[0]] == pytest.approx(expected[:2].tolist(), abs=1e-9 * size)
+    assert motion.velocity(t) == pytest.approx(v[0], abs=1e-12 * size)
 
 
 @settings(max_examples=60, deadline=None)
