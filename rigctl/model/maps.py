@@ -50,9 +50,9 @@ def map_study(
 
     Returns
     -------
-    facts: method, share of points left to LAPACK, share of the area that is unstable, the largest growth rate and
-    where; tables "boundary" (points in order along each line, with exact frequency) and "map" (every point);
-    figure "growth"
+    facts: method, share of points left to LAPACK, share of the area that is unstable, the largest growth rate
+    and where; tables "boundary" (points in order along each line, with exact frequency) and "map" (every
+    point); figure "growth"
     """
     found = eigenvalue_map(model, x, y, values, workers=workers)
     title = f"{model.name}: stability over {found.x.name} and {found.y.name}"
@@ -76,8 +76,8 @@ def boundary_study(
     Parameters
     ----------
     over : see `sim_hardware.brake_model.directions.direction`
-    search : range, searched from its first number. None: mu from 0 to 1, pressure from 0 to 30 bar; anything else
-        from its value half as much down and half as much again up
+    search : range, searched from its first number. None: mu from 0 to 1, pressure from 0 to 30 bar; anything
+        else from its value half as much down and half as much again up
     values : other values than the file's
 
     Returns
@@ -124,7 +124,8 @@ def curve_study(
 
     Returns
     -------
-    facts: lowest and highest crossing, how many were found by the secular equation; table "curve"; figure "curve"
+    facts: lowest and highest crossing, how many were found by the secular equation; table "curve"; figure
+    "curve"
     """
     way = direction(model, over)
     ends = search or _USUAL.get(way.name)
@@ -197,12 +198,12 @@ def _map_table(found: EigenvalueMap) -> Table:
         "map",
         "Every point of the map",
         (
-            Column(found.x.name, _unit(found.x), x.ravel()),
-            Column(found.y.name, _unit(found.y), y.ravel()),
-            Column("growth_rate", "1/s", found.growth_rate_1_s.ravel()),
-            Column("frequency", "Hz", found.frequency_hz.ravel()),
-            Column("unstable_pairs", "", found.unstable_pairs.ravel()),
-            Column("by_lapack", "", (found.fallback | (found.method == "lapack")).ravel()),
+            Column(found.x.name, _unit(found.x), x.ravel().tolist()),
+            Column(found.y.name, _unit(found.y), y.ravel().tolist()),
+            Column("growth_rate", "1/s", found.growth_rate_1_s.ravel().tolist()),
+            Column("frequency", "Hz", found.frequency_hz.ravel().tolist()),
+            Column("unstable_pairs", "", found.unstable_pairs.ravel().tolist()),
+            Column("by_lapack", "", (found.fallback | (found.method == "lapack")).ravel().tolist()),
         ),
     )
 
@@ -283,11 +284,11 @@ def _curve_table(curve: BoundaryCurve) -> Table:
         "curve",
         "Stability boundary along the curve (empty: none in the range)",
         (
-            Column(curve.along.name, _unit(curve.along), curve.along_values),
-            Column(curve.moved.name, _unit(curve.moved), curve.values),
-            Column("frequency", "Hz", curve.frequencies_hz),
+            Column(curve.along.name, _unit(curve.along), curve.along_values.tolist()),
+            Column(curve.moved.name, _unit(curve.moved), curve.values.tolist()),
+            Column("frequency", "Hz", curve.frequencies_hz.tolist()),
             Column("kind", "", [None if np.isnan(f) else _kind(f) for f in curve.frequencies_hz.tolist()]),
-            Column("destabilises", "", curve.destabilises),
+            Column("destabilises", "", curve.destabilises.tolist()),
         ),
     )
 

@@ -82,9 +82,8 @@ def map_figure(found: EigenvalueMap) -> Figure:
     _frequency_labels(axes, found.boundary)
     label_axes(axes, axis_label(found.x), axis_label(found.y), x_gap_pt=24.0, y_gap_pt=36.0)
     colour_bar(axes, mesh, "growth rate of the most unstable pair [1/s]", left=0.875, gap_pt=34.0)
-    figure.suptitle(
-        f"{found.model_name}: unstable over {100.0 * found.unstable_share:.1f} % of the area", x=0.1, y=0.975, **TITLE
-    )  # fmt: skip
+    share = f"unstable over {100.0 * found.unstable_share:.1f} % of the area"
+    figure.suptitle(f"{found.model_name}: {share}", x=0.1, y=0.975, **TITLE)
     line = Line2D([], [], color=INK, lw=1.6, label="stability boundary, with frequency in Hz")
     if found.boundary:
         figure.legend(handles=[line], loc="upper left", bbox_to_anchor=(0.095, 0.935), frameon=False)
@@ -181,7 +180,9 @@ def _edges(values: Array) -> Array:
         half = 0.5 * (abs(values[0]) or 1.0) * 0.1
         return np.array([values[0] - half, values[0] + half])
     middles = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate([[1.5 * values[0] - 0.5 * values[1]], middles, [1.5 * values[-1] - 0.5 * values[-2]]])
+    return np.concatenate(
+        [[1.5 * values[0] - 0.5 * values[1]], middles, [1.5 * values[-1] - 0.5 * values[-2]]]
+    )
 
 
 def _limits(values: Array) -> tuple[float, float]:
@@ -205,6 +206,13 @@ def _frequency_labels(axes: Axes, lines: tuple[BoundaryLine, ...]) -> None:
             placed.append((float(u[k]), float(v[k])))
             name = f"{line.frequency_hz[k]:.0f}" if line.frequency_hz[k] > 0.0 else "divergence"
             text = axes.text(
-                line.x[k], line.y[k], name, ha="center", va="center", fontsize=8.5, color=INK, fontweight="bold"
+                float(line.x[k]),
+                float(line.y[k]),
+                name,
+                ha="center",
+                va="center",
+                fontsize=8.5,
+                color=INK,
+                fontweight="bold",
             )
             text.set_path_effects([withStroke(linewidth=3.0, foreground="white")])

@@ -1,9 +1,10 @@
 """Where a model loses (or regains) stability, exactly: over one quantity or group, and as a curve over two.
 
-A scan finds the first cell in which the largest real part changes its sign; cells in which a pair might have left
-the left half plane and come back, or in which pairs come close, are scanned finer first. In the cell Newton's method
-with eq 24 finds the crossing, kept within its bracket, so that an exchange of modes does no harm. Along a curve the
-scan is one eigenvalue map, and Newton solves F(i omega; t) = 0 of the secular equation in (omega, t).
+A scan finds the first cell in which the largest real part changes its sign; cells in which a pair might have
+left the left half plane and come back, or in which pairs come close, are scanned finer first. In the cell
+Newton's method with eq 24 finds the crossing, kept within its bracket, so that an exchange of modes does no
+harm. Along a curve the scan is one eigenvalue map, and Newton solves F(i omega; t) = 0 of the secular
+equation in (omega, t).
 NOT its job: maps of growth rates (`maps`), many variants in one batch (`margins`), locus with mode identity
 (`tracking`).
 """
@@ -22,6 +23,7 @@ from sim_hardware.brake_model.boundary_newton import (
     crossing_between,
     free_motions,
     growing,
+    on_axis,
     secular_crossings,
     without_free,
 )
@@ -102,7 +104,8 @@ def stability_boundary(
     *,
     steps: int = _STEPS,
 ) -> StabilityBoundary:
-    """First value between `low` and `high` at which the model loses (or, unstable at `low`, regains) stability.
+    """First value between `low` and `high` at which the model loses (or, unstable at `low`, regains)
+    stability.
 
     Parameters
     ----------
@@ -181,8 +184,8 @@ def boundary_curve(
         if exact.point is not None:
             crossing[row], omega[row] = exact.point.value, exact.point.frequency_hz * 2.0 * math.pi
     return BoundaryCurve(
-        way, other, low, high, along_values, crossing, omega / (2.0 * math.pi), ~unstable[:, 0] & np.isfinite(crossing),
-        unstable[:, 0], done, solved.fallback_share,
+        way, other, low, high, along_values, crossing, omega / (2.0 * math.pi), ~unstable[:, 0] &
+        np.isfinite(crossing), unstable[:, 0], done, solved.fallback_share,
     )  # fmt: skip
 
 
@@ -196,8 +199,8 @@ def check_size(model: LinearModel) -> None:
     """
     if len(model.freedoms) > LARGEST:
         raise ValueError(
-            f"the model '{model.name}' has {len(model.freedoms)} degrees of freedom: all eigenvalues at many points "
-            f"are for up to {LARGEST}; study a frequency band instead"
+            f"the model '{model.name}' has {len(model.freedoms)} degrees of freedom: all eigenvalues at many "
+            f"points are for up to {LARGEST}; study a frequency band instead"
         )
 
 
@@ -225,14 +228,18 @@ class _Scan:
     def _first(self, grid: Array, values: Complex, depth: int) -> tuple[float, float] | None:
         unstable = growing(values, self._free)
         changes = unstable[1:] != unstable[:-1]
-        doubtful = _doubtful(values, self._free) if depth and not self.starts_unstable else np.zeros_like(changes)
+        doubtful = (
+            _doubtful(values, self._free) if depth and not self.starts_unstable else np.zeros_like(changes)
+        )
         for i in np.flatnonzero(changes | doubtful):
             if doubtful[i]:
                 finer = np.linspace(grid[i], grid[i + 1], _PARTS + 1)
                 inner = np.stack([self._at(float(t)).state_matrix() for t in finer[1:-1]])
                 self.points += len(inner)
                 between = sorted_eigenvalues(np.linalg.eigvals(inner))
-                found = self._first(finer, np.concatenate([values[i : i + 1], between, values[i + 1 : i + 2]]), depth - 1)
+                found = self._first(
+                    finer, np.concatenate([values[i : i + 1], between, values[i + 1 : i + 2]]), depth - 1
+                )
                 if found is not None:
                     return found
             elif changes[i]:
@@ -251,24 +258,19 @@ class _Scan:
 def _doubtful(values: Complex, free: int) -> NDArray[np.bool_]:
     """Cells (m - 1,) between stable points that may hide an unstable range.
 
-    A real part could rise by as much as it and its neighbours change nearby; and where two eigenvalues are closer
-    than they move, they may couple in between.
+    A real part could rise by as much as it and its neighbours change nearby; and where two eigenvalues are
+    closer than they move, they may couple in between.
     """
-    kept = without_free(values, free)
-    upper = kept[:, kept[0].imag >= 0.0] if (np.sum(kept.imag >= 0, axis=1) == np.sum(kept[0].imag >= 0)).all() else kept
-    moved = np.abs(np.diff(upper, axis=0))
-    stable = upper.real < 0.0
-    change = np.abs(np.diff(upper.real, axis=0))
-    wide = np.pad(change, ((1, 1), (0, 0)))
-    rise = 2.0 * np.maximum(np.maximum(wide[:-2], wide[1:-1]), wide[2:])
-    high = np.maximum(upper.real[:-1], upper.real[1:])
-    near_axis = ((high + rise >= 0.0) & stable[:-1] & stable[1:]).any(axis=1)
-    gaps = np.abs(np.diff(upper, axis=1)) if upper.shape[1] > 1 else np.full((len(upper), 1), np.inf)
-    gap = np.minimum(gaps[:-1], gaps[1:])
-    pair = moved[:, :-1] + moved[:, 1:] if upper.shape[1] > 1 else moved
-    close = (gap < 2.0 * pair).any(axis=1)
-    settled = (upper.real[:-1] > 0.0).any(axis=1) | (upper.real[1:] > 0.0).any(axis=1)
-    return (near_axis | close) & ~settled
+    kept, axis = without_free(values, free), on_axis(values)[:, None]
+    high = np.maximum(kept.real[:-1], kept.real[1:])
+    change = np.pad(np.abs(np.diff(kept.real, axis=0)), ((1, 1), (0, 0)))
+    rise = 2.0 * np.maximum(np.maximum(change[:-2], change[1:-1]), change[2:])
+    near_axis = ((high < -axis[1:]) & (high + rise >= 0.0)).any(axis=1)
+    moved = np.abs(np.diff(kept, axis=0))
+    apart = np.abs(kept[:, 2:] - kept[:, :-2])  # pairs follow each other by twos
+    close = (np.minimum(apart[:-1], apart[1:]) < 2.0 * (moved[:, 2:] + moved[:, :-2])).any(axis=1)
+    settled = np.asarray(kept.real.max(axis=1) > axis[:, 0])
+    return np.asarray((near_axis | close) & ~settled[:-1] & ~settled[1:])
 
 
 def _check_range(low: float, high: float, steps: int) -> None:

@@ -1,4 +1,5 @@
-"""Refining a crossing of the imaginary axis between two points: Newton with eq 24, or with the secular equation.
+"""Refining a crossing of the imaginary axis between two points: Newton with eq 24, or with the secular
+equation.
 
 Both are kept within their bracket. Also the meaning of "unstable" beyond rounding, and of motions without any
 restoring force. NOT its job: finding the bracket (`boundary`, `maps`).
@@ -105,7 +106,8 @@ def secular_crossings(
 
     Parameters
     ----------
-    lines : coefficients (m, 2, terms, n / 2) of each line (`SecularEquation.along_x` or `along_y`), and the range of t
+    lines : coefficients (m, 2, terms, n / 2) of each line (`SecularEquation.along_x` or `along_y`), and the
+        range of t
     cells : (m, 2) ends of the cells
     near : (m, 2, n) eigenvalues there; unstable at one end
 
@@ -134,18 +136,22 @@ def eigenvalue_rate(matrices: Matrices, change: Matrices, value: complex) -> com
     matrices, change : M, D, K and their derivatives, dense
     value : the eigenvalue, 1/s
     """
-    left, size, right = np.linalg.svd(value**2 * matrices.mass + value * matrices.damping + matrices.stiffness)
+    left, size, right = np.linalg.svd(
+        value**2 * matrices.mass + value * matrices.damping + matrices.stiffness
+    )
     if len(size) > 1 and size[-1] > 1e-3 * size[-2]:
         return complex("nan")  # no single null vector: eigenvalues coincide
     w, v = left[:, -1].conj(), right[-1].conj()
     across = w @ (2.0 * value * matrices.mass + matrices.damping) @ v
     if abs(across) == 0.0:
         return complex("nan")
-    return complex(-(w @ (value**2 * change.mass + value * change.damping + change.stiffness) @ v) / across)  # eq 24
+    return complex(
+        -(w @ (value**2 * change.mass + value * change.damping + change.stiffness) @ v) / across
+    )  # eq 24
 
 
 def free_motions(values: Complex) -> int:
-    """Number of eigenvalues (..., n) that are zero but for rounding, everywhere: rigid bodies without couplings."""
+    """Number of eigenvalues (..., n) that are 0 but for rounding everywhere: bodies without couplings."""
     size = np.abs(values)
     return int((size <= _FREE * size.max(axis=-1, keepdims=True)).sum(axis=-1).min())
 
@@ -158,5 +164,10 @@ def without_free(values: Complex, free: int) -> Complex:
 
 
 def growing(values: Complex, free: int) -> NDArray[np.bool_]:
-    """Whether an eigenvalue (..., n) has a positive real part, beyond rounding."""
-    return without_free(values, free).real.max(axis=-1) > ON_AXIS * np.abs(values).max(axis=-1)
+    """Whether an eigenvalue (..., n), sorted by frequency, has a positive real part, beyond rounding."""
+    return without_free(values, free).real.max(axis=-1) > on_axis(values)
+
+
+def on_axis(values: Complex) -> Array:
+    """Real part up to which eigenvalues (..., n), sorted by frequency, count as on the axis."""
+    return ON_AXIS * np.maximum(np.abs(values[..., 0]), np.abs(values[..., -1]))

@@ -1,7 +1,7 @@
 """What a study moves along: one quantity, or quantities changed together by a common share.
 
-Job: a number t as values of a model, and the exact derivatives of M, D, K by t. NOT its job: any study, the design
-modifications themselves (`variations`).
+Job: a number t as values of a model, and the exact derivatives of M, D, K by t. NOT its job: any study, the
+design modifications themselves (`variations`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ class Direction:
     Attributes
     ----------
     name, unit : of the number t; for several quantities t is the relative change, unit "1"
-    rates : quantity -> relative change per unit of t; empty where t is the value of the quantity `name` itself
+    rates : quantity -> relative change per unit of t; empty where t is the value of the quantity `name`
+        itself
     """
 
     name: str
@@ -74,8 +75,9 @@ def direction(model: LinearModel, moved: str | ParameterGroup | Variation | Dire
 
     Parameters
     ----------
-    moved : a quantity; a group or its name, moved as a whole by the share t; "group:clockwise" (or another mode of
-        `variations`): leading up, trailing down by the share t; a `Variation`: t = 1 is the variation as it is
+    moved : a quantity; a group or its name, moved as a whole by the share t; "group:clockwise" (or another
+        mode of `variations`): leading up, trailing down by the share t; a `Variation`: t = 1 is the variation
+        as it is
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Maps of stability over two numbers: all eigenvalues, growth rate, frequency, unstable pairs, boundary.
 
-Eigenvalues come from `secular` (about a microsecond a point) or LAPACK, whichever applies. The boundary is the
-contour of growth rate zero; its points on the grid's lines are refined by Newton's method to the exact crossing,
-with the exact frequency. NOT its job: figures, the first crossing along one quantity (`boundary`).
+Eigenvalues come from `secular` (about a microsecond a point) or LAPACK, whichever applies. The boundary is
+the contour of growth rate zero; its points on the grid's lines are refined by Newton's method to the exact
+crossing, with the exact frequency. NOT its job: figures, the first crossing along one quantity (`boundary`).
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim_hardware.brake_model.boundary import Moved, check_size
 from sim_hardware.brake_model.boundary_newton import (
-    ON_AXIS,
     crossing_between,
     free_motions,
+    on_axis,
     secular_crossings,
     without_free,
 )
@@ -57,7 +57,8 @@ class EigenvalueMap:
     model_name : of the model
     x, y : what is moved
     x_values, y_values : (nx,), (ny,)
-    eigenvalues : (ny, nx, n) 1/s, sorted by frequency at each point: a pair as l (Im > 0), conjugate; reals first
+    eigenvalues : (ny, nx, n) 1/s, sorted by frequency at each point: a pair as l (Im > 0), conjugate; reals
+        first
     method : "secular" or "lapack"; `reason`: why
     fallback : (ny, nx) points of the secular method that its guards left to LAPACK
     """
@@ -115,7 +116,7 @@ class EigenvalueMap:
 
     @cached_property
     def _axis(self) -> Array:
-        return ON_AXIS * np.abs(self.eigenvalues).max(axis=-1)
+        return on_axis(self.eigenvalues)
 
     @cached_property
     def boundary(self) -> tuple[BoundaryLine, ...]:
@@ -189,8 +190,8 @@ def eigenvalue_map(
 
     Parameters
     ----------
-    x, y : (what to move, its values (nx,) or (ny,)); values rising or falling. Names of quantities; groups move as
-        a whole by a share: see `directions.direction`
+    x, y : (what to move, its values (nx,) or (ny,)); values rising or falling. Names of quantities; groups
+        move as a whole by a share: see `directions.direction`
     values : other values than the file's
     method : None: the secular equation where it applies, else LAPACK
     workers : threads of the secular method

@@ -2,15 +2,16 @@
 
 With nodes z_1 … z_n, the characteristic polynomial p of the state matrix A(x, y) is, exactly,
 
-    p(l) / prod (l - z_j) = F(l) = 1 + sum_j w_j(x, y) / (l - z_j),   w_j = p(z_j; x, y) / prod_{k != j} (z_j - z_k).
+    p(l) / prod (l - z_j) = F(l) = 1 + sum_j w_j(x, y) / (l - z_j),   w_j = p(z_j; x, y) / prod_{k != j} (z_j
+    - z_k).
 
-The nodes are the eigenvalues at a reference point, moved a little aside. Where A differs from the reference by a term
-U C(x, y) V^T of low rank r (friction acts at two rigid pads: r = 2), F is the r x r secular determinant
-det(I + C V^T (A0 - l)^-1 U) written out, and w_j are polynomials of degree r in x and y; in any case they are smooth,
-even where eigenvalues coincide, so that a few points give them for a whole rectangle (Chebyshev interpolation).
-A point of the grid then costs one sum of n terms for each eigenvalue, continued from its neighbour, and guards:
-the traces of A and A^2 must come out, every last correction be small, every root stand alone. What is not
-guarded through is solved by LAPACK; the share of such points is reported.
+The nodes are the eigenvalues at a reference point, moved a little aside. Where A differs from the reference
+by a term U C(x, y) V^T of low rank r (friction acts at two rigid pads: r = 2), F is the r x r secular
+determinant det(I + C V^T (A0 - l)^-1 U) written out, and w_j are polynomials of degree r in x and y; in any
+case they are smooth, even where eigenvalues coincide, so that a few points give them for a whole rectangle
+(Chebyshev interpolation). A point of the grid then costs one sum of n terms for each eigenvalue, continued
+from its neighbour, and guards: the traces of A and A^2 must come out, every last correction be small, every
+root stand alone. What is not guarded through is solved by LAPACK; the share of such points is reported.
 NOT its job: what the eigenvalues mean (`maps`, `boundary`).
 """
 
@@ -26,11 +27,13 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from sim_hardware.brake_model.linear import Matrices
-from sim_hardware.brake_model.secular_kernels import FLAGGED, HISTORY, walk_rows
+from sim_hardware.brake_model.secular_kernels import FLAGGED, HISTORY, LANES, walk_rows
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 MatricesAt = Callable[[float, float], Matrices]
+#: state matrices (m, n, n) at points (m,), (m,)
+StateMatrices = Callable[[Array, Array], Array]
 Method = Literal["secular", "lapack"]
 
 #: nodes lie this far to the right of the reference eigenvalues, relative to their magnitude: no root is hit
@@ -55,7 +58,8 @@ class GridEigenvalues:
 
     Attributes
     ----------
-    values : (ny, nx, n) 1/s, sorted by frequency at each point; a pair as l (Im > 0), conjugate; real ones first
+    values : (ny, nx, n) 1/s, sorted by frequency at each point; a pair as l (Im > 0), conjugate; real ones
+        first
     method : "secular", or "lapack" where that pays or must be
     reason : why, in words
     fallback : (ny, nx) points that the guards left to LAPACK
@@ -101,7 +105,7 @@ class Interval:
 
     def basis(self, numbers: Array | float, terms: int) -> Array:
         """Polynomials T_0 … at numbers, (..., terms)."""
-        return chebyshev.chebvander(self.scaled(numbers), terms - 1)
+        return np.asarray(chebyshev.chebvander(self.scaled(numbers), terms - 1), dtype=float)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,12 +114,14 @@ class SecularEquation:
 
     Attributes
     ----------
+    size : number n of eigenvalues
     x, y : the rectangle
-    a, b : (n / 2,) of the pairs of nodes
+    a, b : (n / 2,) of the pairs of nodes; here and below padded to a multiple of `LANES`
     numerators : (2, terms y, terms x, n / 2) Chebyshev coefficients of c and e
     sums : (2, terms y, terms x) of the traces of A and of A^2
     """
 
+    size: int
     x: Interval
     y: Interval
     a: Array
@@ -135,9 +141,18 @@ class SecularEquation:
             basis, self.sums.swapaxes(1, 2)
         )
 
+    def swapped(self) -> SecularEquation:
+        """The same with x and y exchanged."""
+        return SecularEquation(
+            self.size, self.y, self.x, self.a, self.b, self.numerators.swapaxes(1, 2), self.sums.swapaxes(1,
+            2)
+        )  # fmt: skip
+
 
 class MatrixSurface:
-    """State matrices A(x, y) on a rectangle: interpolated where they are low polynomials (exact), else asked for."""
+    """State matrices A(x, y) on a rectangle: interpolated where they are low polynomials (exact), else asked
+    for.
+    """
 
     def __init__(self, matrices_at: MatricesAt, x: Interval, y: Interval) -> None:
         self._at, self._x, self._y = matrices_at, x, y
@@ -158,7 +173,7 @@ class MatrixSurface:
             return np.stack([self._matrix(x, y) for x, y in zip(xs, ys, strict=True)])
         rows, columns = self._coefficients.shape[:2]
         basis = np.einsum("ms,mt->mst", self._y.basis(ys, rows), self._x.basis(xs, columns))
-        return np.tensordot(basis, self._coefficients, axes=2)
+        return np.asarray(np.tensordot(basis, self._coefficients, axes=2), dtype=float)
 
 
 def secular_equation(matrices: MatrixSurface, x: Interval, y: Interval) -> SecularEquation | None:
@@ -189,9 +204,13 @@ def secular_equation(matrices: MatrixSurface, x: Interval, y: Interval) -> Secul
             high = np.abs(traces) > 1e-15 * np.abs(traces).max(axis=(1, 2), keepdims=True)
             used = ~small.all(axis=(0, 3)) | high.any(axis=0)
             rows, columns = (int(np.flatnonzero(used.any(axis=k))[-1]) + 1 for k in (1, 0))
+            short = np.ascontiguousarray(traces[:, :rows, :columns])
+            spare = -len(nodes) % LANES
+            nodes = np.pad(nodes, (0, spare), mode="edge")  # terms that are zero, at a place where no root is
+            padding = ((0, 0), (0, 0), (0, 0), (0, spare))
             return SecularEquation(
-                x, y, 2.0 * nodes.real, np.abs(nodes) ** 2,
-                np.ascontiguousarray(numerators[:, :rows, :columns]), np.ascontiguousarray(traces[:, :rows, :columns]),
+                2 * (len(nodes) - spare), x, y, 2.0 * nodes.real, np.abs(nodes) ** 2,
+                np.pad(numerators[:, :rows, :columns], padding), short,
             )  # fmt: skip
     return None
 
@@ -227,9 +246,9 @@ def grid_eigenvalues(
         if equation is None:
             reason = "the characteristic polynomial is not smooth enough over this range"
         else:
-            result = _by_secular(equation, matrices, xs, ys, workers)
-            if result is not None:
-                return result
+            solved = _by_secular(equation, matrices, xs, ys, workers)
+            if solved is not None:
+                return GridEigenvalues(solved[0], "secular", reason, solved[1], equation)
             reason = "the secular equation failed its guards at most points"
     fallback = np.zeros((len(ys), len(xs)), dtype=bool)
     values = np.empty((len(ys), len(xs), size), dtype=np.complex128)
@@ -247,10 +266,27 @@ def _choice(points: int, size: int, sampled: int) -> tuple[Method, str]:
 
 def _by_secular(
     equation: SecularEquation, matrices: MatrixSurface, xs: Array, ys: Array, workers: int
-) -> GridEigenvalues | None:
-    nx, ny, size = len(xs), len(ys), 2 * equation.a.size
+) -> tuple[Complex, NDArray[np.bool_]] | None:
+    """Eigenvalues (ny, nx, n) and which are LAPACK's, or None where the guards pass too little."""
+    if len(ys) > len(xs):  # lines along y: the longer they are, the better roots are predicted
+        values, state = _lines(equation.swapped(), lambda a, b: matrices(b, a), ys, xs, workers)
+        values, state = values.swapaxes(0, 1), state.T
+    else:
+        values, state = _lines(equation, matrices, xs, ys, workers)
+    flagged = state == FLAGGED
+    if flagged.mean() > _HOPELESS:
+        return None
+    _by_lapack(matrices, xs, ys, flagged, values)
+    return values, flagged
+
+
+def _lines(
+    equation: SecularEquation, matrices: StateMatrices, xs: Array, ys: Array, workers: int
+) -> tuple[Complex, NDArray[np.uint8]]:
+    """Eigenvalues along lines of constant y, which points are SOLVED; all FLAGGED where a few tries fail."""
+    nx, ny, size = len(xs), len(ys), equation.size
     values = np.empty((ny, nx, size), dtype=np.complex128)
-    state = np.empty((ny, nx), dtype=np.uint8)
+    state = np.full((ny, nx), FLAGGED, dtype=np.uint8)
     starts, counts = _first_column(equation, matrices, xs, ys)
     basis = equation.x.basis(xs, equation.numerators.shape[2])
     weights = prediction_weights(equation.x.scaled(xs))
@@ -264,32 +300,29 @@ def _by_secular(
     picked = np.unique(np.linspace(0, ny - 1, min(ny, 4)).astype(np.int64))
     rows(picked)
     if (state[picked] == FLAGGED).mean() > _HOPELESS:
-        return None
+        return values, np.full_like(state, FLAGGED)
     others = np.setdiff1d(np.arange(ny), picked)
     if workers > 1:
         with ThreadPoolExecutor(workers) as pool:
             list(pool.map(rows, np.array_split(others, 4 * workers)))
     else:
         rows(others)
-    flagged = state == FLAGGED
-    _by_lapack(matrices, xs, ys, flagged, values)
-    return GridEigenvalues(values, "secular", "the faster one", flagged, equation)
+    return values, state
 
 
 def _first_column(
-    equation: SecularEquation, matrices: MatrixSurface, xs: Array, ys: Array
+    equation: SecularEquation, matrices: StateMatrices, xs: Array, ys: Array
 ) -> tuple[Array, NDArray[np.int64]]:
-    """Roots near the first point of each row, (ny, 2, n), and their numbers: the first column, from its corner."""
-    size = 2 * equation.a.size
+    """Roots near the first point of each line, (ny, 2, n), and their numbers, along the first column."""
+    size = equation.size
     starts, counts = np.empty((len(ys), 2, size)), np.empty(len(ys), dtype=np.int64)
     starts[0], counts[0] = _half(sorted_eigenvalues(np.linalg.eigvals(matrices(xs[:1], ys[:1]))[0]))
     numerators, sums = equation.along_y(xs[:1])
     values = np.empty((1, len(ys), size), dtype=np.complex128)
     state = np.empty((1, len(ys)), dtype=np.uint8)
-    walk_rows(
-        np.zeros(1, dtype=np.int64), equation.y.basis(ys, numerators.shape[2]), prediction_weights(equation.y.scaled(ys)),
-        equation.a, equation.b, numerators, sums, starts, counts, values, state,
-    )  # fmt: skip
+    basis, weights = equation.y.basis(ys, numerators.shape[2]), prediction_weights(equation.y.scaled(ys))
+    only = np.zeros(1, dtype=np.int64)
+    walk_rows(only, basis, weights, equation.a, equation.b, numerators, sums, starts, counts, values, state)
     for row in range(1, len(ys)):
         solved = state[0, row] != FLAGGED
         starts[row], counts[row] = _half(values[0, row]) if solved else (starts[row - 1], counts[row - 1])
@@ -314,7 +347,7 @@ def _by_lapack(
 
 
 def prediction_weights(points: Array) -> Array:
-    """Weights (n, HISTORY, HISTORY): [i, h - 1, :h] predict point i from its h predecessors, the last one first."""
+    """Weights (n, HISTORY, HISTORY): [i, h - 1, :h] predict point i from its h predecessors, last first."""
     n = len(points)
     weights = np.zeros((n, HISTORY, HISTORY))
     for used in range(1, HISTORY + 1):

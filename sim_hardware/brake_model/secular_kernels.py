@@ -1,25 +1,43 @@
 """Compiled: eigenvalues along a line of points as roots of a secular equation, continued from point to point.
 
-The equation (see `secular`): F(l) = 1 + sum_j (c_j l + e_j) / (l^2 - a_j l + b_j) = 0, one real quadratic for each
-pair of nodes. Every root is predicted from its past, corrected by Newton, and all of them are guarded together.
+The equation (see `secular`): F(l) = 1 + sum_j (c_j l + e_j) / (l^2 - a_j l + b_j) = 0, one real quadratic for
+each pair of nodes. Every root is predicted from its past, corrected by Newton, and all of them are guarded
+together.
 NOT its job: building coefficients, LAPACK for the points flagged here (`secular`).
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
 from numpy.typing import NDArray
+
+from sim_hardware.brake_model.simd import (
+    add,
+    divide,
+    load8,
+    multiply,
+    multiply_add,
+    negative_multiply_add,
+    splat8,
+    subtract,
+    zero8,
+)
 
 Array = NDArray[np.float64]
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-#: sums may be reordered; infinities and not-a-numbers keep their meaning, the guards need them
-FAST = {"reassoc", "contract", "arcp", "nsz"}
+#: tables of terms are padded to a multiple of this
+LANES = 8
+_INDEX = ir.IntType(32)
 #: most past points a root is predicted from
 HISTORY = 6
 #: last correction of a root, relative to it; Newton then leaves its square
-_STEP = 3e-9
+_STEP = 3e-8
 _STEPS = 6
 #: |F'| |l| of a root below which it has a close neighbour and is left to LAPACK
 _ISOLATED = 2e-2
@@ -32,30 +50,53 @@ _REAL = 1e-7
 SOLVED, FLAGGED = 0, 1
 
 
-@njit(fastmath=FAST, inline="always", **OPTIONS)
+@intrinsic
+def total(typing_context: Any, a: Any) -> Any:
+    """Return the sum of all lanes of a vector (`simd`), halves added to halves."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        value, lanes = args[0], signature.args[0].lanes
+        while lanes > 1:
+            nothing = ir.Constant(value.type, ir.Undefined)
+            lower, upper = (
+                builder.shuffle_vector(
+                    value,
+                    nothing,
+                    ir.Constant(ir.VectorType(_INDEX, lanes // 2), list(range(first, first + lanes // 2))),
+                )
+                for first in (0, lanes // 2)
+            )
+            value, lanes = builder.fadd(lower, upper), lanes // 2
+        return builder.extract_element(value, ir.Constant(_INDEX, 0))
+
+    return types.float64(a), code
+
+
+@njit(**OPTIONS)
 def _secular(
     re: float, im: float, a: Array, b: Array, c: Array, e: Array
 ) -> tuple[float, float, float, float]:
-    """F and F' at re + i im."""
-    square_re, square_im = re * re - im * im, 2.0 * re * im
-    twice_re, twice_im = 2.0 * re, 2.0 * im
-    f_re, f_im, g_re, g_im = 1.0, 0.0, 0.0, 0.0
-    for j in range(a.size):
-        q_re = square_re - a[j] * re + b[j]
-        q_im = square_im - a[j] * im
-        inverse = 1.0 / (q_re * q_re + q_im * q_im)
-        n_re = c[j] * re + e[j]
-        n_im = c[j] * im
-        t_re = (n_re * q_re + n_im * q_im) * inverse
-        t_im = (n_im * q_re - n_re * q_im) * inverse
-        s_re = twice_re - a[j]
-        u_re = c[j] - t_re * s_re + t_im * twice_im
-        u_im = -t_re * twice_im - t_im * s_re
-        g_re += (u_re * q_re + u_im * q_im) * inverse
-        g_im += (u_im * q_re - u_re * q_im) * inverse
-        f_re += t_re
-        f_im += t_im
-    return f_re, f_im, g_re, g_im
+    """F and F' at re + i im; all tables in lanes of eight, padded with terms that are zero."""
+    x, y, one = splat8(re), splat8(im), splat8(1.0)
+    square_x, square_y = splat8(re * re - im * im), splat8(2.0 * re * im)
+    twice_x, twice_y = splat8(2.0 * re), splat8(2.0 * im)
+    f_x, f_y, g_x, g_y = zero8(), zero8(), zero8(), zero8()
+    for j in range(0, a.size, LANES):
+        a_j, c_j = load8(a, j), load8(c, j)
+        q_x = negative_multiply_add(a_j, x, add(square_x, load8(b, j)))
+        q_y = negative_multiply_add(a_j, y, square_y)
+        inverse = divide(one, multiply_add(q_x, q_x, multiply(q_y, q_y)))
+        q_x, q_y = multiply(q_x, inverse), multiply(q_y, inverse)  # 1 / q = q_x - i q_y
+        n_x, n_y = multiply_add(c_j, x, load8(e, j)), multiply(c_j, y)
+        t_x = multiply_add(n_x, q_x, multiply(n_y, q_y))
+        t_y = negative_multiply_add(n_x, q_y, multiply(n_y, q_x))
+        s_x = subtract(twice_x, a_j)
+        u_x = multiply_add(t_y, twice_y, negative_multiply_add(t_x, s_x, c_j))
+        u_y = multiply_add(t_x, twice_y, multiply(t_y, s_x))  # F' of a term: (u_x - i u_y) / q
+        f_x, f_y = add(f_x, t_x), add(f_y, t_y)
+        g_x = add(g_x, negative_multiply_add(u_y, q_y, multiply(u_x, q_x)))
+        g_y = subtract(g_y, multiply_add(u_y, q_x, multiply(u_x, q_y)))
+    return 1.0 + total(f_x), total(f_y), total(g_x), total(g_y)
 
 
 @njit(**OPTIONS)
@@ -84,7 +125,7 @@ def _correct(roots: Array, count: int, a: Array, b: Array, c: Array, e: Array) -
 
 @njit(**OPTIONS)
 def _complete(roots: Array, count: int, first: float, second: float) -> bool:
-    """Whether the roots are all eigenvalues: their sum and the sum of their squares are traces of A and A^2."""
+    """Whether the roots are all eigenvalues: their sum and that of their squares are traces of A and A^2."""
     sum_1, sum_2, size_1, size_2 = 0.0, 0.0, 0.0, 0.0
     for k in range(count):
         re, im = roots[0, k], roots[1, k]
@@ -98,12 +139,14 @@ def _complete(roots: Array, count: int, first: float, second: float) -> bool:
 
 
 @njit(**OPTIONS)
-def _aberth(start: Array, count: int, roots: Array, a: Array, b: Array, c: Array, e: Array) -> int:
+def _aberth(  # noqa: PLR0912, PLR0915 (one iteration, its parts in order)
+    start: Array, count: int, roots: Array, half: int, a: Array, b: Array, c: Array, e: Array
+) -> int:
     """All roots anew by Ehrlich and Aberth from those of a neighbour, reals and pairs free to change.
 
     Returns the number of roots with Im >= 0 now in `roots`, or 0 where they did not come to rest.
     """
-    n = 2 * a.size
+    n = 2 * half
     re, im, done = np.empty(n), np.empty(n), np.zeros(n, np.bool_)
     m = 0
     for k in range(count):  # a little apart and off the axis, so that pairs may part
@@ -126,7 +169,7 @@ def _aberth(start: Array, count: int, roots: Array, a: Array, b: Array, c: Array
             # p'/p = F'/F + sum of 1/(l - node), less the other roots: each is drawn to a zero of its own
             inverse = 1.0 / (f_re * f_re + f_im * f_im)
             r_re, r_im = (g_re * f_re + g_im * f_im) * inverse, (g_im * f_re - g_re * f_im) * inverse
-            for j in range(a.size):
+            for j in range(half):
                 n_re, n_im = 2.0 * x - a[j], 2.0 * y
                 q_re, q_im = x * x - y * y - a[j] * x + b[j], 2.0 * x * y - a[j] * y
                 inverse = 1.0 / (q_re * q_re + q_im * q_im)
@@ -190,7 +233,7 @@ def _store(roots: Array, count: int, order: NDArray[np.int64], out: NDArray[np.c
 
 
 @njit(**OPTIONS)
-def _walk(
+def _walk(  # noqa: PLR0912 (one loop, its parts in order)
     basis: Array,
     weights: Array,
     a: Array,
@@ -203,9 +246,10 @@ def _walk(
     state: NDArray[np.uint8],
 ) -> None:
     """Eigenvalues at all points of a line; see `walk_rows`."""
-    points, terms, half = basis.shape[0], basis.shape[1], a.size
-    c, e = np.empty(half), np.empty(half)
+    points, terms, half = basis.shape[0], basis.shape[1], out.shape[1] // 2
+    c, e = np.zeros(a.size), np.zeros(a.size)
     past = np.empty((HISTORY, 2, 2 * half))
+    newest = 0
     roots = np.empty((2, 2 * half))
     order = np.arange(2 * half)
     count, known = start_count, 0
@@ -224,15 +268,15 @@ def _walk(
         if known == 0:
             roots[:, :count] = last[:, :count]
         else:
-            for part in range(2):
-                for k in range(count):
-                    value = 0.0
-                    for h in range(known):
-                        value += weights[i, known - 1, h] * past[h, part, k]
-                    roots[part, k] = value
+            roots[:, :count] = 0.0
+            for h in range(known):
+                value, row = weights[i, known - 1, h], (newest - h) % HISTORY
+                for part in range(2):
+                    for k in range(count):
+                        roots[part, k] += value * past[row, part, k]
         solved = _correct(roots, count, a, b, c, e) and _complete(roots, count, first, second)
         if not solved:
-            found = _aberth(last, count, roots, a, b, c, e)
+            found = _aberth(last, count, roots, half, a, b, c, e)
             solved = (
                 found > 0 and _correct(roots, found, a, b, c, e) and _complete(roots, found, first, second)
             )
@@ -247,9 +291,8 @@ def _walk(
             continue
         state[i] = SOLVED
         last[:, :count] = roots[:, :count]
-        for h in range(min(known, HISTORY - 1), 0, -1):
-            past[h, :, :count] = past[h - 1, :, :count]
-        past[0, :, :count] = roots[:, :count]
+        newest = (newest + 1) % HISTORY
+        past[newest, :, :count] = roots[:, :count]
         known = min(known + 1, HISTORY)
         _store(roots, count, order, out[i])
 
@@ -274,22 +317,35 @@ def walk_rows(
     ----------
     rows : (m,) the lines to do
     basis : (points, terms) polynomials of the variable along the lines
-    weights : (points, HISTORY, HISTORY) weights [h - 1, :h] that predict a point from its h predecessors, last first
-    a, b : (n / 2,) of the nodes
-    numerators : (lines, 2, terms, n / 2) coefficients of c and e
+    weights : (points, HISTORY, HISTORY) weights [h - 1, :h] that predict a point from its h predecessors,
+        last first
+    a, b : (n / 2,) of the nodes, padded to a multiple of `LANES`
+    numerators : (lines, 2, terms, n / 2) coefficients of c and e, padded alike
     sums : (lines, 2, terms) of the traces of A and A^2
-    starts, counts : (lines, 2, n) Re and Im of the roots with Im >= 0 near the first point, (lines,) their number
+    starts, counts : (lines, 2, n) Re and Im of the roots with Im >= 0 near the first point, (lines,) their
+        number
     out : (lines, points, n) eigenvalues; undefined where flagged
     state : (lines, points) SOLVED or FLAGGED
     """
     for row in rows:
         _walk(
-            basis, weights, a, b, numerators[row], sums[row], starts[row], counts[row], out[row], state[row]
+            basis,
+            weights,
+            a,
+            b,
+            numerators[row],
+            sums[row],
+            starts[row],
+            int(counts[row]),
+            out[row],
+            state[row],
         )
 
 
 @njit(**OPTIONS)
-def cross_rows(a: Array, b: Array, numerators: Array, low: Array, high: Array, found: Array) -> NDArray[np.bool_]:
+def cross_rows(
+    a: Array, b: Array, numerators: Array, low: Array, high: Array, found: Array
+) -> NDArray[np.bool_]:
     """Crossings of the imaginary axis on some lines: Newton in (omega, u) on F(i omega; u) = 0.
 
     Parameters

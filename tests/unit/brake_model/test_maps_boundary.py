@@ -32,7 +32,9 @@ def test_growth_frequency_and_number_of_unstable_pairs() -> None:
         at = {"mu": xs[column], "pressure": ys[row]}
         values = np.linalg.eigvals(model.matrices(at).state_matrix())
         assert found.growth_rate_1_s[row, column] == pytest.approx(values.real.max(), rel=1e-8)
-        assert found.frequency_hz[row, column] == pytest.approx(abs(leading(model, at).imag) / (2 * np.pi), rel=1e-9)
+        assert found.frequency_hz[row, column] == pytest.approx(
+            abs(leading(model, at).imag) / (2 * np.pi), rel=1e-9
+        )
         assert found.unstable_pairs[row, column] == np.sum((values.real > 0) & (values.imag >= 0))
     assert found.unstable_pairs.max() >= 2
     assert 0.0 < found.unstable_share < 1.0
@@ -48,7 +50,7 @@ def test_growth_frequency_and_number_of_unstable_pairs() -> None:
         ("plant", ("piston_stiffness", (-0.3, 0.3)), ("pressure", (0.0, 30.0)), None),
     ],
 )
-def test_points_of_the_boundary_lie_on_the_axis_with_their_frequency(brake: str, x, y, method) -> None:  # noqa: ANN001
+def test_points_of_the_boundary_lie_on_the_axis_with_their_frequency(brake: str, x, y, method) -> None:
     model = BRAKES[brake]
     found = eigenvalue_map(
         model, (x[0], np.linspace(*x[1], 14)), (y[0], np.linspace(*y[1], 11)), method=method

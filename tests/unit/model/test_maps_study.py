@@ -34,7 +34,8 @@ def run(app: typer.Typer, *arguments: str) -> str:
 
 def test_map_of_the_basic_brake() -> None:
     study = map_study(
-        read_model(BRAKES / "basic.toml"), ("mu", np.linspace(0.0, 1.0, 51)), ("pressure", np.linspace(0.0, 10.0, 9))
+        read_model(BRAKES / "basic.toml"), ("mu", np.linspace(0.0, 1.0, 51)), ("pressure", np.linspace(0.0,
+        10.0, 9))
     )  # fmt: skip
     assert study.facts["method"] == "secular equation"
     assert study.facts["share_of_points_left_to_lapack"] <= 0.01
@@ -112,7 +113,7 @@ def test_commands(app: typer.Typer, tmp_path: Path) -> None:
         (("boundary", "--over", "disc_mass:clockwise:0:0.3"), "model.toml", "no leading and trailing"),
     ],
 )
-def test_bad_input_gives_one_clear_error(app: typer.Typer, arguments, place: str, problem: str) -> None:  # noqa: ANN001
+def test_bad_input_gives_one_clear_error(app: typer.Typer, arguments, place: str, problem: str) -> None:
     command, *options = arguments
     result = CliRunner().invoke(app, [command, str(BRAKES / "model.toml"), *options])
     assert isinstance(result.exception, ConfigError)

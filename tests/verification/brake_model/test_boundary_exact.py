@@ -1,7 +1,8 @@
 """Stability boundaries against all crossings at once, which a bialternate eigenvalue problem gives exactly.
 
-For A(t) = A0 + t A1 some sum of two different eigenvalues is zero exactly where det(2 A(t) (.) I) = 0: an eigenvalue
-problem in t of size n (n - 1) / 2 that shares nothing with a scan. Real eigenvalues pass zero where det A(t) = 0.
+For A(t) = A0 + t A1 some sum of two different eigenvalues is zero exactly where det(2 A(t) (.) I) = 0: an
+eigenvalue problem in t of size n (n - 1) / 2 that shares nothing with a scan. Real eigenvalues pass zero
+where det A(t) = 0.
 """
 
 from __future__ import annotations
@@ -111,7 +112,10 @@ def test_the_paper_s_boundaries() -> None:
     assert basic.kind == "flutter"
     model = stability_boundary(BRAKES["model"], "pressure", 0.0, 30.0).point
     assert model is not None
-    assert (model.value, model.frequency_hz) == (pytest.approx(15.0, abs=0.01), pytest.approx(2140.0, abs=0.1))
+    assert (model.value, model.frequency_hz) == (
+        pytest.approx(15.0, abs=0.01),
+        pytest.approx(2140.0, abs=0.1),
+    )
     assert stability_boundary(BRAKES["model"], "mu", 0.0, 0.69, {"slope": 0.0}).point is None
 
 
@@ -126,7 +130,9 @@ def test_the_paper_s_boundaries() -> None:
         ("model", "finger_stiffness:clockwise", 0.0, 0.5, {"pressure": 14.0}),
     ],
 )
-def test_at_the_boundary_one_pair_lies_on_the_axis(brake: str, moved: str, low: float, high: float, values) -> None:  # noqa: ANN001
+def test_at_the_boundary_one_pair_lies_on_the_axis(
+    brake: str, moved: str, low: float, high: float, values
+) -> None:
     model = BRAKES[brake]
     found = stability_boundary(model, moved, low, high, values)
     assert found.point is not None
@@ -140,7 +146,9 @@ def test_at_the_boundary_one_pair_lies_on_the_axis(brake: str, moved: str, low: 
         assert np.linalg.eigvals(model.matrices(way.values(model, t, values)).state_matrix()).real.max() < 0.0
     step = 1e-5 * (high - low)
     moved_on = [
-        np.linalg.eigvals(model.matrices(way.values(model, found.point.value + s, values)).state_matrix()).real.max()
+        np.linalg.eigvals(
+            model.matrices(way.values(model, found.point.value + s, values)).state_matrix()
+        ).real.max()
         for s in (-step, step)
     ]
     assert found.point.rate_1_s == pytest.approx((moved_on[1] - moved_on[0]) / (2.0 * step), rel=1e-4)
@@ -203,7 +211,9 @@ def test_divergence() -> None:
         ("basic", "mu", 1.5, 0.0, "x_con", np.linspace(0.03, 0.035, 5)),
     ],
 )
-def test_curves_equal_single_boundaries(brake: str, moved: str, low: float, high: float, along: str, values) -> None:  # noqa: ANN001
+def test_curves_equal_single_boundaries(
+    brake: str, moved: str, low: float, high: float, along: str, values
+) -> None:
     model = BRAKES[brake]
     curve = boundary_curve(model, moved, low, high, along, values)
     assert curve.by_secular.any()

@@ -18,16 +18,16 @@ BRAKES = {name: load_brake(Path(__file__).parents[3] / f"configs/brakes/{name}.t
           ("basic", "model", "plant")}  # fmt: skip
 
 
-def lapack(at, xs, ys):  # noqa: ANN001, ANN201
+def lapack(at, xs, ys):
     matrices = np.array([[at(float(x), float(y)).state_matrix() for x in xs] for y in ys])
     return sorted_eigenvalues(np.linalg.eigvals(matrices))
 
 
-def mu_pressure(model: LinearBrake, slope: float = 0.0576):  # noqa: ANN201
+def mu_pressure(model: LinearBrake, slope: float = 0.0576):
     return lambda x, y: model.matrices({"mu": x, "pressure": y, "slope": slope})
 
 
-def assert_equal(found, wanted, tolerance: float = 1e-9) -> None:  # noqa: ANN001
+def assert_equal(found, wanted, tolerance: float = 1e-9) -> None:
     assert found.shape == wanted.shape
     np.testing.assert_array_less(np.abs(found - wanted), tolerance * np.abs(wanted) + 1e-300)
 
@@ -67,7 +67,10 @@ def test_scattered_brakes_equal_lapack_everywhere(name: str, seed: int, top: flo
 
 def test_divergence_is_found_and_never_wrong() -> None:
     """Real eigenvalues at large mu: the structure of the spectrum changes within the grid."""
-    changed = {n: p.value * (1.2 if i % 2 else 0.85) for i, (n, p) in enumerate(BRAKES["basic"].spec.parameters.items())}
+    changed = {
+        n: p.value * (1.2 if i % 2 else 0.85)
+        for i, (n, p) in enumerate(BRAKES["basic"].spec.parameters.items())
+    }
     at = mu_pressure(LinearBrake(BRAKES["basic"].with_parameters(**changed)))
     xs, ys = np.linspace(0.0, 60.0, 121), np.linspace(0.0, 30.0, 7)
     result = grid_eigenvalues(at, xs, ys, method="secular")
@@ -83,7 +86,9 @@ def test_any_two_quantities_also_geometry_and_inertia() -> None:
     base = model.quantities
     for x, y in (("c_con_il", "mu"), ("m_padi", "d_con"), ("x_con", "c_pis_n"), ("slope", "pressure")):
         spans = [
-            np.linspace(0.7 * base[n].value, 1.3 * base[n].value, 25) if base[n].value else np.linspace(0.0, 0.2, 25)
+            np.linspace(0.7 * base[n].value, 1.3 * base[n].value, 25)
+            if base[n].value
+            else np.linspace(0.0, 0.2, 25)
             for n in (x, y)
         ]
 
@@ -97,7 +102,7 @@ def test_any_two_quantities_also_geometry_and_inertia() -> None:
 
 @pytest.mark.parametrize(("nx", "ny"), [(1, 1), (2, 1), (1, 3), (3, 2)])
 @pytest.mark.parametrize("method", ["secular", "lapack", None])
-def test_small_grids(nx: int, ny: int, method) -> None:  # noqa: ANN001
+def test_small_grids(nx: int, ny: int, method) -> None:
     at = mu_pressure(LinearBrake(BRAKES["plant"]))
     xs, ys = np.linspace(0.2, 0.6, nx), np.linspace(3.0, 9.0, ny)
     result = grid_eigenvalues(at, xs, ys, method=method)
@@ -125,7 +130,7 @@ def test_a_quantity_without_influence() -> None:
     assert_equal(result.values, np.broadcast_to(result.values[:1], result.values.shape), 1e-11)
 
 
-def chain(n: int, damping: float, friction: bool = True, ground: float = 1.0):  # noqa: ANN201
+def chain(n: int, damping: float, friction: bool = True, ground: float = 1.0):
     """A chain of n masses; x scales a nonconservative force, y a damper."""
     k = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
     k[0, 0] = 1.0 + ground
@@ -167,7 +172,9 @@ def test_two_equal_systems_have_coinciding_eigenvalues() -> None:
     wanted = lapack(at, xs, ys)
     assert np.abs(result.values - wanted).max() < 1e-7 * np.abs(wanted).max()
     single = lapack(chain(3, 1e-3), xs, ys)
-    np.testing.assert_allclose(result.values.real.max(axis=-1), single.real.max(axis=-1), atol=1e-6 * np.abs(wanted).max())
+    np.testing.assert_allclose(
+        result.values.real.max(axis=-1), single.real.max(axis=-1), atol=1e-6 * np.abs(wanted).max()
+    )
 
 
 def test_one_degree_of_freedom() -> None:
@@ -192,5 +199,7 @@ def test_predictions_are_exact_for_polynomials() -> None:
 def test_singular_mass_matrix_is_refused() -> None:
     with pytest.raises(np.linalg.LinAlgError):
         grid_eigenvalues(
-            lambda x, y: Matrices(np.zeros((2, 2)), np.eye(2), x * np.eye(2)), np.array([1.0, 2.0]), np.array([1.0])
+            lambda x, y: Matrices(np.zeros((2, 2)), np.eye(2), x * np.eye(2)),
+            np.array([1.0, 2.0]),
+            np.array([1.0]),
         )
