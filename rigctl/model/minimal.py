@@ -28,6 +28,7 @@ from sim_hardware.brake_model.minimal.cycles import (
     next_turn_m,
     orbit,
     phase_plane,
+    stick_slip_cycle,
 )
 from sim_hardware.brake_model.minimal.hurwitz import (
     Crossing,
@@ -54,6 +55,8 @@ BELT = BeltOscillator(
 """1 kg at 2135 Hz under 15 bar; the slope is ten times the measured one, so that growth is seen by eye."""
 
 SPEEDS_M_S = (0.01, 1.0)
+SQUEAL_SPEED_M_S = 0.44
+"""Sliding speed of the paper's squeal test (section 5.3): 40 1/min at 0.105 m."""
 SPRAG = SpragModel(
     mass_kg=1.0,
     angle_rad=math.radians(15.0),
@@ -214,6 +217,8 @@ def _speed_facts(
     facts: dict[str, Any] = {}
     for law in laws:
         facts[f"{law.law}_frequency_spread_percent"] = 100.0 * curves[law.law].spread
+        if isinstance(law, CoulombLaw):
+            facts["coulomb_speed_of_strong_dependence_m_s"] = _coulomb_speed(belt.changed(law=law))
         if isinstance(law, LinearFallingLaw):
             oscillator = belt.changed(law=law)
             facts["linear_one_way_up_to_m_s"] = largest_one_way_speed(oscillator)
@@ -261,14 +266,16 @@ def _belt_statements(
             continue
         span = f"{f.min():.1f} … {f.max():.1f} Hz"
         if isinstance(law, CoulombLaw):
+            ours = span + _coulomb_words(belt.changed(law=law, belt_speed_m_s=SQUEAL_SPEED_M_S))
             rows.append(
-                ("limit-cycle frequency over belt speed, Coulomb", "depends on it", span, curve.spread > 1e-3)
+                ("limit-cycle frequency over belt speed, Coulomb", "depends on it", ours, curve.spread > 1e-3)
             )
         elif isinstance(law, LinearFallingLaw):
             oscillator = belt.changed(law=law)
             limit, spread = largest_one_way_speed(oscillator), _one_way_spread(oscillator, curve)
             if math.isfinite(spread):
-                ours = f"constant within {100 * spread:.0e} % up to {limit:.3g} m/s; over all speeds {span}"
+                words = "constant to rounding" if spread < 1e-12 else f"constant within {100 * spread:.0e} %"
+                ours = f"{words} up to {limit:.3g} m/s; over all speeds {span}"
                 rows.append(
                     (
                         "limit-cycle frequency over belt speed, linear falling",
@@ -278,6 +285,24 @@ def _belt_statements(
                     )
                 )
     return rows
+
+
+def _coulomb_words(at_squeal: BeltOscillator) -> str:
+    """How much of the dependence is left at the speed at which brakes squeal."""
+    cycle = stick_slip_cycle(at_squeal)
+    if cycle is None:
+        return f"; none at {SQUEAL_SPEED_M_S:g} m/s (40 1/min)"
+    below = 100.0 * (1.0 - cycle.frequency_hz / at_squeal.frequency_hz)
+    return (
+        f"; at {SQUEAL_SPEED_M_S:g} m/s (40 1/min) {cycle.frequency_hz:.1f} Hz, {below:.2g} % below the "
+        f"natural frequency: strong only below {_coulomb_speed(at_squeal):.2g} m/s"
+    )
+
+
+def _coulomb_speed(belt: BeltOscillator) -> float:
+    """(mu_s - mu_d) F_n / sqrt(c m): belt speed (m/s) below which sticking takes much of a period."""
+    drop = belt.law.mu_static - belt.law.sliding(0.0)
+    return drop * belt.normal_force_n / math.sqrt(belt.stiffness_n_m * belt.mass_kg)
 
 
 def _plane_statements(belt: BeltOscillator, plane: PhasePlane) -> list[Statement]:

@@ -73,6 +73,11 @@ def test_figure_1a_compares_every_statement_with_the_paper(figure_1a: Study) -> 
     assert figure_1a.facts["linear_spread_up_to_there_percent"] < 1e-9
     assert figure_1a.facts["linear_one_way_up_to_m_s"] == pytest.approx(0.21127, abs=1e-5)
     assert figure_1a.facts["coulomb_frequency_spread_percent"] == pytest.approx(31.578, abs=1e-2)
+    assert figure_1a.facts["coulomb_speed_of_strong_dependence_m_s"] == pytest.approx(
+        0.1 * 3435 / 13416.4, rel=1e-5
+    )
+    coulomb = next(row for row in table.rows() if row[0].endswith("Coulomb"))
+    assert "at 0.44 m/s (40 1/min) 2135.2 Hz" in coulomb[3]  # hardly any dependence where brakes squeal
 
 
 def test_growth_per_turn_is_that_of_the_eigenvalue(figure_1a: Study) -> None:

@@ -90,6 +90,9 @@ def test_damping_ratio_is_equation_31_and_dimensionless_motion_is_the_same() -> 
     impedance = math.sqrt(belt.stiffness_n_m * belt.mass_kg)
     assert small.friction_damping == pytest.approx(-3435.0 * 0.6 / (2.0 * impedance), rel=1e-15)
     assert small.damping == pytest.approx(belt.damping_ratio, rel=1e-14)
+    right_side = 3435.0 / 1.8e8 * (0.5 - 0.6 * 0.15)  # eq 30: F_n / c (mu_0 sgn(v) - k v_0)
+    assert belt.equilibrium_m == pytest.approx(right_side, rel=1e-14)
+    assert small.oscillator.equilibrium_m * small.length_scale_m == pytest.approx(right_side, rel=1e-14)
     times = np.linspace(0.0, 3e-3, 50)
     x, v = simulate(belt, 2e-6, 0.0, 3e-3).at(times)
     end = 3e-3 / small.time_scale_s
