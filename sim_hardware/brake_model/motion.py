@@ -354,24 +354,37 @@ def _run(
             events.append(Event(float(record.event_time[i]), where, _KINDS[kind]))
         memory.counts[steps.EVENTS] = 0
         if status not in (steps.DONE, steps.BUFFER_FULL):
-            raise _failure(brake, status, float(memory.clock[0]), tables, events)
+            raise _failure(brake, status, memory, tables, events)
         if memory.counts[steps.WRITTEN] == len(record.times):
             return tuple(events)
 
 
 def _failure(
-    brake: Brake, status: int, time_s: float, tables: steps.Tables, events: list[Event]
+    brake: Brake, status: int, memory: steps.Memory, tables: steps.Tables, events: list[Event]
 ) -> ArithmeticError:
-    last = (
-        f"; last event: {events[-1].where} {events[-1].kind} at {events[-1].time_s:.9g} s" if events else ""
-    )
     what = {
         steps.NOT_FINITE: "is not finite: check the stability of the brake at this working point",
         steps.STEP_TOO_SMALL: "needs steps below rounding: raise rtol or atol_m, or look for extreme values",
         steps.TOO_MANY_STEPS: f"took {tables.most_steps} steps: shorten it, raise rtol, or raise most_steps",
         steps.CHATTER: "has events without end at one moment: raise rtol, or check contacts with no load",
     }[status]
-    return ArithmeticError(f"the motion of brake '{brake.name}' at {time_s:.9g} s {what}{last}")
+    mu = _mu_at(memory, tables)
+    if status in (steps.NOT_FINITE, steps.STEP_TOO_SMALL) and mu < 0.0:
+        what = (
+            f"grows beyond all bounds: the falling friction law has left its range, mu = {mu:.3g} at the "
+            "slip speed reached; lower the slope k, or give a law that saturates"
+        )
+    last = events[-1] if events else None
+    before = f"; last event: {last.where} {last.kind} at {last.time_s:.9g} s" if last else ""
+    return ArithmeticError(f"the motion of brake '{brake.name}' at {memory.clock[0]:.9g} s {what}{before}")
+
+
+def _mu_at(memory: steps.Memory, tables: steps.Tables) -> float:
+    """Least coefficient of friction at the present slip speeds."""
+    n = len(tables.inverse_inertia)
+    _, mu, mean, slope = (float(np.interp(memory.clock[0], tables.knots, c)) for c in tables.course.T)
+    beyond = np.abs(mean - tables.slip_rows @ memory.state[n:]) - mean
+    return float((mu - slope * beyond / np.sqrt(1.0 + (beyond * tables.inverse_saturation) ** 2)).min())
 
 
 def _coupling_forces(motion: Motion, groups: tuple[FrictionGroup, ...]) -> CouplingForces:

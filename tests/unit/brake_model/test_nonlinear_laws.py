@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.friction import ConstantFriction
+from sim_hardware.brake_model.friction import ConstantFriction, LinearFriction
 from sim_hardware.brake_model.integrator import SquealIntegrator
 from sim_hardware.brake_model.laws import (
     cubic_for_doubled_stiffness,
@@ -218,5 +218,8 @@ def test_limits_of_integration_are_reported() -> None:
     state[20] = 1e-3
     with pytest.raises(ArithmeticError, match=r"took 5 steps: shorten it"):
         integrate(NONLINEAR, POINT, state, [0.0, 0.1], most_steps=5)
+    steep = WorkingPoint(3000.0, 0.1, LinearFriction(mu_mean=0.4, k_s_m=5.0))
+    with pytest.raises(ArithmeticError, match=r"left its range, mu = -.* a law that saturates"):
+        integrate(NONLINEAR, steep, 1e3 * state, [0.0, 0.1])
     with pytest.raises(ArithmeticError, match=r"'model' at 0 s is not finite"):
         integrate(NONLINEAR, POINT, np.full(28, 1e200), [0.0, 0.1])

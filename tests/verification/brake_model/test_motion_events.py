@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oscillators import belt
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.special import ellipk
 
@@ -299,3 +301,38 @@ def test_tolerance_controls_the_error_through_events() -> None:
     ]
     assert abs(times[1] - times[2]) < 1e-9
     assert abs(times[0] - times[2]) < 1e-6
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(
+    seed=st.integers(0, 10_000),
+    size=st.floats(-5.0, 0.3),
+    load=st.sampled_from([0.0, 1e-3, 10.0, 300.0, 3000.0]),
+    slip=st.sampled_from([0.0, 1e-4, 0.01, 0.3]),
+    lifts=st.booleans(),
+    hardening=st.sampled_from([0.0, 1.0, 1000.0]),
+    static_mu=st.sampled_from([None, 1.0]),
+)
+def test_set_valued_law_holds_for_any_motion(
+    seed: int, size: float, load: float, slip: float, lifts: bool, hardening: float, static_mu: float | None
+) -> None:
+    """Random kicks: forces within the law, no slip while sticking, no pull at one-sided contacts."""
+    brake = with_cubic_contacts(PLANT, strength=hardening)
+    brake = one_sided(brake) if lifts else brake
+    law = LinearFriction(mu_mean=0.5, k_s_m=0.05)
+    course = WorkingCourse.constant(WorkingPoint(load, slip, law), static_mu=static_mu)
+    start = np.zeros(2 * N)
+    start[N:] = 10.0**size * np.random.default_rng(seed).normal(size=N)
+    motion = integrate(brake, course, start, np.linspace(0.0, 5e-4, 501))
+    pressed = np.maximum(motion.normal_n, 0.0)
+    bearing = np.stack([pressed[:, :2].sum(axis=1), pressed[:, 2:].sum(axis=1)], axis=1)
+    speed, stuck = motion.sliding_speed_m_s, motion.sliding == 0
+    holding = law.holding_mu(slip) if static_mu is None else static_mu
+    scale = 1e-6 * (bearing.max() + 1.0)
+    assert (np.abs(motion.friction_n[stuck]) <= holding * bearing[stuck] + scale).all()
+    sliding = law.mu(speed, slip) * bearing * motion.sliding
+    np.testing.assert_allclose(motion.friction_n[~stuck], sliding[~stuck], atol=scale)
+    assert np.abs(speed[stuck]).max(initial=0.0) < 1e-12
+    assert (speed * motion.sliding).min() > -1e-8 * max(slip, 1.0)
+    if lifts:
+        assert motion.normal_n.min() > -scale
