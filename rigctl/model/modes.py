@@ -253,13 +253,24 @@ def budget_figure(shape: ModeShape, shares: Participation, title: str) -> Figure
     size = [max(abs(c.damping_1_s), abs(c.friction_1_s)) for c in shares.couplings]
     acting = [shares.couplings[k] for k in np.argsort(size)[-_BARS:]]
     names = [c.name for c in acting]
-    right.barh(names, [c.damping_1_s for c in acting], color=BLUE, height=0.7, label="dampers")
-    right.barh(names, [c.friction_1_s for c in acting], color=VERMILION, height=0.34, label="friction")
+    right.barh(
+        names,
+        [c.damping_1_s for c in acting],
+        color=BLUE,
+        height=0.7,
+        label=f"dampers: {shares.damping_1_s:+.4g} 1/s",
+    )
+    right.barh(
+        names,
+        [c.friction_1_s for c in acting],
+        color=VERMILION,
+        height=0.34,
+        label=f"friction: {shares.friction_1_s:+.4g} 1/s",
+    )
     right.axvline(0.0, color=INK, lw=0.9)
     right.legend(loc="lower right" if shares.friction_1_s >= 0 else "lower left")
     right.margins(x=0.08)
-    sums = f"{shares.damping_1_s:+.0f} dampers, {shares.friction_1_s:+.0f} friction"
-    axes_title(right, f"Real part: {sums}")
+    axes_title(right, f"Real part {shape.eigenvalue.real:+.4g} 1/s")
     label_axes(right, "adds to the real part [1/s]")
     grid(right, "x")
     return figure
