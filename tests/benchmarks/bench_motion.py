@@ -1,8 +1,9 @@
 """Speed and error of the integration with events; run by hand: python tests/benchmarks/bench_motion.py
 
 Growing squeal that slides forwards (peers: scipy's DOP853 and RK45 with a numpy right-hand side), a limit
-cycle by sticking (peer: our fixed-rate integrator), one-sided contacts that lift off (peer: scipy's DOP853 without
-events on the kinked force), and the whole of Fig. 11. Each time stands beside its error against rtol 1e-12.
+cycle by sticking (peer: our fixed-rate integrator), one-sided contacts that lift off (peer: scipy's DOP853
+without events on the kinked force), and the whole of Fig. 11. Each time stands beside its error against rtol
+1e-12.
 """
 
 import time

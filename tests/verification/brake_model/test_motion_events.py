@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oscillators import belt
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oscillators import belt
 from scipy.linalg import expm
 from scipy.special import ellipk
 
