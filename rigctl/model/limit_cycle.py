@@ -27,6 +27,8 @@ from sim_hardware.brake_model.squeal_ramp import Ramp, ramps
 
 #: speed of the paper's measurements (section 4.1), and v_s where no plant file says it
 SPEED_RPM, SATURATION_M_S = 40.0, 0.10
+#: values of one study: each is simulated for seconds, and its last stretch is kept
+MOST_VALUES = 2000
 _SUFFIX = {"pressure": "_bar", "slope": "_s_m", "slip": "_m_s"}
 _VERDICTS = {
     "none": "no onset within the range",
@@ -120,6 +122,10 @@ def squeal_study(
     KeyError, ValueError
         unknown quantity, values that cannot be
     """
+    if len(values) > MOST_VALUES:
+        raise ValueError(
+            f"{len(values)} values are too many to simulate side by side; give {MOST_VALUES} at most"
+        )
     radiation = radiation or Radiation()
     bound = None if linear_law else radiation.saturation_m_s if saturation_m_s is None else saturation_m_s
     _check_surfaces(brake, radiation)

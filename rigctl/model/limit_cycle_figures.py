@@ -107,6 +107,8 @@ def _stability(axes: Axes, found: Branches, *, label: bool = True) -> None:
     """Shade where eigenvalues say unstable; line at the onset."""
     values, growth = found.points.values, found.mode.growth_1_s
     low, high = float(values.min()), float(values.max())
+    if low == high:
+        low, high = low - 0.5, high + 0.5
     axes.set_xlim(low, high)
     onset = found.onset_eigenvalues
     if onset is None:

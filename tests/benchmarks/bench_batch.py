@@ -1,10 +1,11 @@
 """Batch of brakings against one braking at a time and against Exudyn; run by hand: python
 tests/benchmarks/bench_batch.py
 
-Squeal of the plant at 20 bar (saturating law), 40 kHz output, rms and frequency of a weighted sum of outputs. Times
-real time are summed over the lanes of one core. All are measured in turns within the same minutes, by processor time
-(wall clock beside it: other load on the machine shows there). Beside every time: the squeal's frequency and level
-against 640 kHz over 0.25 s, and the largest velocity error over 5 ms against DOP853 at rtol 1e-10.
+Squeal of the plant at 20 bar (saturating law), 40 kHz output, rms and frequency of a weighted sum of outputs.
+Times real time are summed over the lanes of one core. All are measured in turns within the same minutes, by
+processor time (wall clock beside it: other load on the machine shows there). Beside every time: the squeal's
+frequency and level against 640 kHz over 0.25 s, and the largest velocity error over 5 ms against DOP853 at
+rtol 1e-10.
 Exudyn is measured where the interpreter has it (`exudyn_brake` says how, and how its friction is modelled).
 """
 
@@ -82,7 +83,7 @@ def single_run(start: np.ndarray, **other: Any) -> Callable[[], float]:
     """One braking, 0.1 s per call."""
     integrator = SquealIntegrator(PLANT, outputs=OUTPUTS, weights=ONES)
     integrator.state = start
-    pairs = PAIRS | {k: (v, v) if k != "saturation_m_s" else v for k, v in other.items()}
+    pairs: dict[str, Any] = PAIRS | {k: (v, v) if k != "saturation_m_s" else v for k, v in other.items()}
 
     def run() -> float:
         integrator.advance(4000, **pairs)
@@ -186,10 +187,10 @@ def main() -> None:
             peer()
     base = statistics.median(processor for _, processor in rates["single"])
     print(
-        "\n                           x real time, one core          to    squeal error            velocity error"
+        "\n                           x real time, one core          to    squeal error        velocity error"
     )
     print(
-        "                           processor  best   wall clock  single  frequency     level     5 ms, relative"
+        "                           processor  best   wall clock  single  frequency     level  5 ms, relative"
     )
     for name, pairs in rates.items():
         wall, processor = (statistics.median(values) for values in zip(*pairs, strict=True))
@@ -202,9 +203,7 @@ def main() -> None:
     peer = statistics.median(processor for _, processor in rates["Exudyn alpha 160 kHz"])
     bare = statistics.median(processor for _, processor in rates["Exudyn alpha, no friction"])
     many = statistics.median(processor for _, processor in rates["batch 64 lanes"])
-    print(
-        f"\nsingle / Exudyn (alpha, 160 kHz): {base / peer:.0f}; against Exudyn without friction: {base / bare:.0f}"
-    )
+    print(f"\nsingle / Exudyn (alpha, 160 kHz): {base / peer:.0f}; without friction there: {base / bare:.0f}")
     print(f"batch  / Exudyn (alpha, 160 kHz): {many / peer:.0f}")
 
 

@@ -1,10 +1,11 @@
-"""The brake in Exudyn, as a peer of the benchmarks: the same matrices and the same friction, its own integrators.
+"""The brake in Exudyn, as a peer of the benchmarks: the same matrices and friction, its own integrators.
 
-One ObjectGenericODE2 with M, K(mu), D(mu) of the brake. Friction beyond the linear part, (mu(v) - mu)(N0 + N~)
-with the saturating law of `friction`, is one more ObjectGenericODE2 per pad, on the nodes of pad and disc, with a
-force user function: by default a symbolic one, which Exudyn evaluates in C++ without calling Python. While the
-pads slide forwards the law is smooth and needs no regularisation; sticking and lift-off are not in it, and do not
-happen in the motion that is measured. The Jacobian is that of the matrices and kept (modified Newton).
+One ObjectGenericODE2 with M, K(mu), D(mu) of the brake. Friction beyond the linear part, (mu(v) - mu)
+(N0 + N~) with the saturating law of `friction`, is one more ObjectGenericODE2 per pad, on the nodes of pad and
+disc, with a force user function: by default a symbolic one, which Exudyn evaluates in C++ without calling
+Python. While the pads slide forwards the law is smooth and needs no regularisation; sticking and lift-off are
+not in it, and do not happen in the motion that is measured. The Jacobian is that of the matrices and kept
+(modified Newton).
 NOT its job: measuring (`bench_batch`).
 """
 
@@ -22,7 +23,7 @@ from sim_hardware.brake_model.modal import FrictionGroup, friction_groups
 sys.exudynFast = True  # type: ignore[attr-defined]  # its build without range checks
 try:
     import exudyn as exu  # pyright: ignore[reportMissingImports]
-    import exudyn.itemInterface as exu_items  # pyright: ignore[reportMissingImports]
+    from exudyn import itemInterface as exu_items  # noqa: N813  # pyright: ignore[reportMissingImports]
 except ImportError:  # an optional peer
     exu: Any = None
     exu_items: Any = None
@@ -171,7 +172,7 @@ def _friction(
                 total = factor * vector[i] if total is None else total + factor * vector[i]
         return total
 
-    def force(mbs: Any, t: float, itemNumber: int, q: Any, q_t: Any) -> Any:  # noqa: N803 (Exudyn's names)
+    def force(mbs: Any, t: float, itemNumber: int, q: Any, q_t: Any) -> Any:
         slip = dot(slip_row, q_t)
         x = slip * inverse
         g = k_s_m * slip / root(1.0 + x * x) * (n0 + dot(stiffness, q) + dot(damping, q_t))

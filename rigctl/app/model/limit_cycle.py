@@ -83,11 +83,13 @@ def squeal(
     out: OutOption = None,
     formats: FormatOption = DEFAULT_FORMATS,
 ) -> None:
-    """Squeal beyond its onset: amplitude, sound level and frequency of the limit cycle over a quantity.
+    """Squeal beyond its onset: limit cycles, sound level, hysteresis.
 
-    Every value is simulated from a small and from a large motion until the vibration is steady. Where both
-    end alike there is no hysteresis; where only large motions squeal, squeal once begun lasts below its
-    onset. Eigenvalues give the onset; growth rates of small random motions check it in time.
+    Every value is simulated from a small and from a large motion until
+    the vibration is steady. Where both end alike there is no hysteresis;
+    where only large motions squeal, squeal once begun lasts below its
+    onset. Eigenvalues give the onset; growth rates of small random
+    motions check it in time.
 
     rigctl model squeal configs/brakes/plant.toml --plant configs/plants/a_class.toml --ramp --out results
 

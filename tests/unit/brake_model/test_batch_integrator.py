@@ -164,7 +164,7 @@ def test_rest_stays_at_rest_and_states_come_back() -> None:
 
 def test_statistics_are_those_of_the_outputs() -> None:
     lanes, n = 5, 1700  # more than one piece
-    point = SQUEALING | {"normal_force_n": (FORCE, 1.2 * FORCE)}
+    point: dict[str, Any] = SQUEALING | {"normal_force_n": (FORCE, 1.2 * FORCE)}
     noise = 0.1 * np.random.default_rng(1).normal(size=(n, 2))
     whole, observed = (BatchIntegrator(PLANT, lanes, outputs=NAMES) for _ in range(2))
     whole.states = observed.states = starts(lanes, 1e-2)
@@ -215,8 +215,11 @@ def test_wrong_input_is_refused() -> None:
     with pytest.raises(KeyError, match=r"disc\.z"):
         BatchIntegrator(PLANT, 2, outputs=["disc.z"])
     batch = BatchIntegrator(PLANT, 3, outputs=NAMES)
-    for wrong in ({"mu": np.zeros(2)}, {"slip_m_s": -0.1}, {"k_s_m": np.nan}, {"saturation_m_s": 0.0},
-                  {"excitation_n": np.zeros((5, 2))}, {"normal_force_n": (1.0, 2.0, 3.0)}):  # fmt: skip
+    wrongs: list[dict[str, Any]] = [
+        {"mu": np.zeros(2)}, {"slip_m_s": -0.1}, {"k_s_m": np.nan}, {"saturation_m_s": 0.0},
+        {"excitation_n": np.zeros((5, 2))}, {"normal_force_n": (1.0, 2.0, 3.0)},
+    ]  # fmt: skip
+    for wrong in wrongs:
         with pytest.raises(ValueError, match=next(iter(wrong))):
             batch.advance(10, **(SQUEALING | wrong))
     with pytest.raises(ValueError, match="states"):

@@ -49,13 +49,14 @@ def test_study_with_ramps_and_sound(tmp_path: Path) -> None:
     }
 
 
-def test_sound_is_that_of_the_simulated_rig() -> None:
+def test_sound_is_that_of_the_simulated_rig(tmp_path: Path) -> None:
     """The rig's own integrator with its own weights at a constant working point: the same level."""
     from sim_hardware.brake_model.integrator import SquealIntegrator
 
     radiation, brake = read_radiation(PLANT), read_brake(BRAKE)
     study = squeal_study(brake, "pressure", [18.0], radiation=radiation, longest_s=2.0)
     level = study.table("branches").column("large_level")[0]
+    assert len(write(study, tmp_path, ("png",))) == 1  # a single value can be drawn
     integrator = SquealIntegrator(
         brake, outputs=list(radiation.weights_pa_s2_m), weights=list(radiation.weights_pa_s2_m.values())
     )
@@ -86,6 +87,8 @@ def test_command_writes_files_and_says_what_it_found(tmp_path: Path) -> None:
         ([str(BRAKE), "--set", "pressure=3"], "--set"),
         ([str(BRAKE), "--over", "m_disk:4:6:3"], "plant.toml"),
         ([str(BRAKE), "--plant", "nowhere.toml"], "nowhere"),
+        ([str(BRAKE), "--over", "pressure:0:30:3000"], "2000 at most"),
+        ([str(BRAKE), "--over", "pressure:-5:30:10"], "pressure must be"),
     ],
 )
 def test_bad_input_is_one_clear_error(arguments: list[str], place: str) -> None:
