@@ -18,6 +18,7 @@ from rigctl.analysis.style import BLUE, INK, TITLE, VERMILION, grid, label_axes,
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.band import DAMPING_MAX, EigenPairs, eigen_pairs_of
 from sim_hardware.brake_model.linear import LinearModel, value_of
+from sim_hardware.brake_model.reduction import Reduction
 
 _UNSTABLE = "#FBE3D6"
 #: alignment below which vectors and sensitivities of a pair are called doubtful
@@ -191,3 +192,38 @@ def _labels(
         else:
             labels.append(((x, y), [f"{1e3 * y:.1f}"]))
     return [(place, f"{', '.join(texts)} Hz") for place, texts in labels]
+
+
+def reduction_study(reduction: Reduction, *, name: str = "reduce") -> Study:
+    """What a reduction kept: size, band, agreement with the large model at and between the basis' points."""
+    checks = reduction.checks
+    between = [check for check in checks if not check.basis_point]
+    good = all(check.same_unstable for check in checks)
+    facts = {
+        "degrees_of_freedom_before": reduction.basis.shape[0],
+        "degrees_of_freedom": reduction.basis.shape[1],
+        "band_from_hz": reduction.band_hz[0],
+        "band_to_hz": reduction.band_hz[1],
+        "largest_error_at_basis_points": max(check.error for check in checks if check.basis_point),
+        "largest_error_between": max((check.error for check in between), default=None),
+        "same_pairs_grow": good,
+    }
+    table = Table(
+        "checks",
+        "Small and large model at the same working points",
+        (
+            Column(
+                "at", "", [", ".join(f"{n} = {v:g}" for n, v in check.values.items()) for check in checks]
+            ),
+            Column("basis_made_here", "", [check.basis_point for check in checks]),
+            Column("pairs", "", [check.pairs for check in checks]),
+            Column("error", "", [check.error for check in checks]),
+            Column("same_pairs_grow", "", [check.same_unstable for check in checks]),
+        ),
+    )
+    title = (
+        f"{reduction.model.name}: {reduction.basis.shape[1]} instead of {reduction.basis.shape[0]} "
+        "degrees of freedom, "
+        f"error up to {reduction.largest_error:.1e}"
+    )
+    return Study(name, title, facts, (table,))

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
 
 from sim_hardware.brake_model.band_arnoldi import Found, cover, paired_left
 from sim_hardware.brake_model.band_count import missed
@@ -66,6 +67,12 @@ class EigenPairs:
     real_part_max_1_s: float
     complete: bool | None
     evidence: str
+
+    def chosen(self, keep: NDArray[np.intp]) -> EigenPairs:
+        """Some of the pairs, by their indices."""
+        fields = ("eigenvalues", "residuals", "conditions", "alignments", "errors_1_s")
+        picked = {name: getattr(self, name)[keep] for name in fields}
+        return replace(self, right=self.right[:, keep], left=self.left[:, keep], **picked)
 
     @property
     def frequencies_hz(self) -> Array:
@@ -168,7 +175,8 @@ def _sparse(pencil: Pencil, band: tuple[float, float], damping_max: float) -> Ei
             break
     complete = None if lacking is None else lacking == 0
     count = len(found.shifts)
-    discs = f"{count} {'shifts cover' if count > 1 else 'shift covers'} the band up to a damping ratio of {damping_max:g}"
+    discs = f"{count} {'shifts cover' if count > 1 else 'shift covers'} the band up to a damping ratio of "
+    discs += f"{damping_max:g}"
     evidence = {
         True: f"{discs}; the argument principle counts as many eigenvalues as were found",
         False: f"{discs}; the argument principle counts {lacking} more than were found",

@@ -31,7 +31,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -43,6 +42,7 @@ from sim_hardware.brake_model.linear import (
     MU,
     PRESSURE,
     SLOPE,
+    Array,
     Kind,
     Matrices,
     NamedQuantity,
@@ -180,6 +180,7 @@ class MatrixModel:
             for family in ("mass", "damping", "stiffness")
         }
         self._numbers = given
+        self._quantities = self._named()
         self._groups = tuple(groups) if groups is not None else self._own_groups()
         self._check_groups()
         self.matrices()
@@ -199,17 +200,10 @@ class MatrixModel:
         """Parameter groups of the file, or one for each part."""
         return self._groups
 
-    @cached_property
+    @property
     def quantities(self) -> Mapping[str, NamedQuantity]:
         """Numbers of the file, and a factor of each part."""
-        found = []
-        for name in sorted(self._numbers, key=lambda name: (name not in _UNITS, name)):
-            kinds: set[Kind] = {part.kind for part in self.parts if name in part.powers}
-            own: Kind = kinds.pop() if len(kinds) == 1 else "other"
-            kind: Kind = "operating" if name in _UNITS else own
-            found.append(NamedQuantity(name, self._numbers[name], _UNITS.get(name, ""), kind))
-        found += [NamedQuantity(part.scale, 1.0, "1", part.kind) for part in self.parts]
-        return MappingProxyType({quantity.name: quantity for quantity in found})
+        return self._quantities
 
     def matrices(self, values: Mapping[str, float] | None = None) -> Matrices:
         """M, D, K with other values for some quantities. See `LinearModel.matrices`."""
@@ -243,6 +237,24 @@ class MatrixModel:
                 rates[part.name] = own * _product(others, now) * now[part.scale] if power else 0.0
         return self._combined(rates)
 
+    @property
+    def numbers(self) -> Mapping[str, float]:
+        """Values of the file's quantities, without the parts' factors."""
+        return MappingProxyType(self._numbers)
+
+    def part(self, name: str) -> Any:
+        """The matrix of a part as it stands in the file, dense or CSR."""
+        part = next(part for part in self.parts if part.name == name)
+        own = [p.name for p in self.parts if p.family == part.family]
+        return self._families[part.family].combined([float(other == name) for other in own])
+
+    def projected(self, basis: Array, name: str) -> MatrixModel:
+        """The model restricted to x = basis y, (n_dof, n_small) real: every part V^T P V; same numbers,
+        groups.
+        """
+        parts = {part.name: basis.T @ (self.part(part.name) @ basis) for part in self.parts}
+        return MatrixModel(name, parts, self._numbers, groups=self._groups)
+
     def _combined(self, factors: Mapping[str, float]) -> Matrices:
         return Matrices(
             *(
@@ -269,6 +281,16 @@ class MatrixModel:
                         f"{name} = 0: the matrix {part.name} is divided by it; give another value"
                     )
         return now
+
+    def _named(self) -> Mapping[str, NamedQuantity]:
+        found = []
+        for name in sorted(self._numbers, key=lambda name: (name not in _UNITS, name)):
+            kinds: set[Kind] = {part.kind for part in self.parts if name in part.powers}
+            own: Kind = kinds.pop() if len(kinds) == 1 else "other"
+            kind: Kind = "operating" if name in _UNITS else own
+            found.append(NamedQuantity(name, self._numbers[name], _UNITS.get(name, ""), kind))
+        found += [NamedQuantity(part.scale, 1.0, "1", part.kind) for part in self.parts]
+        return MappingProxyType({quantity.name: quantity for quantity in found})
 
     def _check_numbers(self, given: Mapping[str, float]) -> None:
         used = {name for part in self.parts for name in part.powers}

@@ -74,7 +74,7 @@ def main() -> None:
         if dense:
             truth, dense_s = timed(lambda m=m: inside(np.linalg.eigvals(m.state_matrix())), 1)
         count = len(ours.eigenvalues)
-        # as many as it takes until the band is full: eigs finds the nearest to the middle, also beyond the band
+        # eigs finds the nearest to the middle, also beyond the band: more until the band is full
         wanted = count
         peer, peer_s = timed(lambda m=m, k=wanted: inside(plain_eigs(m, k)), 1)
         while len(peer) < len(truth):
@@ -88,7 +88,8 @@ def main() -> None:
 
         reference = "LAPACK" if dense else "ours"
         print(
-            f"{m.n_dof} degrees of freedom, {count} pairs from {BAND[0]:g} to {BAND[1]:g} Hz, complete: {ours.complete}"
+            f"{m.n_dof} degrees of freedom, {count} pairs from {BAND[0]:g} to {BAND[1]:g} Hz, complete: "
+            f"{ours.complete}"
         )
         print(f"  largest residual {ours.residuals.max():.1e}; {ours.evidence}")
         print(f"  {'':44s} {'s':>8s}   error against {reference}")

@@ -143,3 +143,39 @@ def test_wrong_files_say_what_to_do(tmp_path: Path) -> None:
     np.savez(tmp_path / "half.npz", M=np.eye(2))
     with pytest.raises(ConfigError, match=r"half\.npz: the matrix K is missing"):
         read_model(tmp_path / "half.npz")
+
+
+def test_reduce_writes_a_small_model_and_says_how_good_it_is(app: typer.Typer, tmp_path: Path) -> None:
+    n = 320
+    chain = 1e9 * (np.diag(np.full(n, 2.0)) - np.diag(np.ones(n - 1), 1) - np.diag(np.ones(n - 1), -1))
+    rub = np.zeros((n, n))
+    rub[10, 11], rub[11, 10] = 1e8, -1e8
+    save_matrices(tmp_path / "large.npz", {"M": np.eye(n), "K": chain, "K_mu": rub}, {"mu": 0.4})
+    small = tmp_path / "small.npz"
+    arguments = [
+        "reduce",
+        str(tmp_path / "large.npz"),
+        str(small),
+        "--band",
+        "100:700",
+        "--at",
+        "mu=0",
+        "--at",
+        "mu=1",
+    ]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    assert "small: " in result.output and "instead of 320 degrees of freedom" in result.output
+    before, after = (
+        pairs_study(read_model(path), {"mu": 1.0}, (100.0, 700.0)).table("pairs").column("frequency")
+        for path in (tmp_path / "large.npz", small)
+    )
+    np.testing.assert_allclose(after, before, rtol=1e-6)
+
+
+def test_reduce_refuses_a_brake_file(app: typer.Typer, tmp_path: Path) -> None:
+    result = CliRunner().invoke(
+        app, ["reduce", str(BRAKES / "basic.toml"), str(tmp_path / "s.npz"), "--band", "1:2"]
+    )
+    assert isinstance(result.exception, ConfigError)
+    assert "small already" in str(result.exception)
