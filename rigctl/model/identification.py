@@ -1,12 +1,12 @@
 """Identification of a brake's parameters from recorded squeal: a campaign, or an onset and a frequency by
 hand.
 
-    study = identify_study(path, measured_in(Path("data/campaign")), free=["c_abu_t", "m_padi"])
-    write_brake(path, Path("fitted.toml"), study)
+    study, result = identify_study(path, measured_in(Path("data/campaign")), free=["c_abu_t", "m_padi"])
+    write_brake(path, Path("fitted.toml"), result)
 
-Job: `measured_in` (onset and frequency of a campaign with their uncertainty), `posterior_chain` (a task of
-the runner), `identify_study` (facts, tables, figures), `write_brake`. NOT its job: the fit
-(`brake_model.fit`), finding squeal in sound (`rigctl.signals`).
+Job: `measured_in` (onset and frequency of a campaign with their uncertainty), `identify`, `identify_study`
+(facts, tables, figures), `write_brake`. NOT its job: the fit (`brake_model.fit`), finding squeal in sound
+(`rigctl.signals`).
 """
 
 from __future__ import annotations
@@ -32,9 +32,10 @@ from rigctl.model.identification_figures import (
 )
 from rigctl.model.loading import read_brake, study_errors
 from rigctl.model.output import Study
-from rigctl.model.runner import RunOptions, generator, seeded
+from rigctl.model.runner import RunOptions, seeded
 from rigctl.model.runner_model import load_source, model_source
-from sim_hardware.brake_model.fit import Fit, Measured, chain, fit, potential_scale_reduction
+from rigctl.model.study_tasks import described
+from sim_hardware.brake_model.fit import Fit, Measured, fit, potential_scale_reduction
 from sim_hardware.brake_model.identify import replaced_parameter
 from sim_hardware.brake_model.linear import PRESSURE, known, value_of
 from sim_hardware.brake_model.scatter import Variable, variables
@@ -151,18 +152,6 @@ def measured_in(folder: Path) -> Recorded:
     return Recorded(measured, f"campaign {folder.name}", reading)
 
 
-def posterior_chain(task: dict[str, Any], setting: dict[str, Any]) -> dict[str, Any]:
-    """Samples of the posterior by one chain. A task of `run_study`."""
-    model = load_source(setting["model"])
-    chosen = variables(model, setting["names"], setting["groups"])
-    measured = Measured(**setting["measured"])
-    found = _fitted(setting["fit"])
-    samples, predictions = chain(
-        model, chosen, measured, found, generator(task), setting["length"], base=setting["values"]
-    )
-    return {"logarithms": samples.tolist(), "predictions": predictions.tolist()}
-
-
 def identify(
     path: Path,
     recorded: Recorded,
@@ -210,8 +199,7 @@ def identify(
         measured = recorded.measured
         setting = {
             "model": source,
-            "names": names,
-            "groups": group_names or [],
+            "variables": described(chosen),
             "values": base,
             "length": -(-samples // CHAINS),
             "measured": {name: getattr(measured, name) for name in Measured.__dataclass_fields__},
@@ -224,7 +212,7 @@ def identify(
         with study_errors(place):
             chains = (options or RunOptions()).run(
                 seeded([{} for _ in range(CHAINS)], seed),
-                "rigctl.model.identification:posterior_chain",
+                "rigctl.model.study_tasks:posterior_chain",
                 setting,
             )
         logarithms = np.array([c["logarithms"] for c in chains])
@@ -363,16 +351,6 @@ def _spreads(texts: Sequence[str] | None, spread: float, place: str) -> tuple[li
             ) from None
         names.append(name.strip())
     return names, spreads
-
-
-def _fitted(content: Mapping[str, Any]) -> Fit:
-    """The part of a fit that sampling needs."""
-    empty = np.empty(0)
-    prior, covariance = np.array(content["prior"]), np.array(content["covariance"])
-    return Fit(
-        np.array(content["logarithms"]), prior, np.sqrt(np.diagonal(covariance)), covariance,
-        empty, empty, empty, empty, empty, 0.0, 0.0, 0, True,
-    )  # fmt: skip
 
 
 def _verdict(k: int, d: int, fixed: int) -> str:

@@ -2,8 +2,8 @@
 
     study = optimise_study(path, free=["x_pis:0.014:0.022"], groups=["abutment_stiffness"])
 
-Job: read bounds, `climb` (a task of the runner: one start), `optimise_study` (facts, tables, figures). NOT
-its job: the climbing itself (`sim_hardware.brake_model.optimise`), parallel running (`runner`).
+Job: read bounds, `optimise`, and `optimise_study` with facts, tables and a figure. NOT its job: the climbing
+itself (`sim_hardware.brake_model.optimise`), parallel running (`runner`, `study_tasks`).
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from rigctl.model.optimise_figures import (
 from rigctl.model.output import Study
 from rigctl.model.runner import RunOptions
 from rigctl.model.runner_model import load_source, model_source
+from rigctl.model.study_tasks import described
 from sim_hardware.brake_model.linear import LinearModel, known, value_of
 from sim_hardware.brake_model.optimise import (
     Bounds,
     Margin,
     at_bounds,
     check_bounds,
-    improve,
     stability_margin,
     starts,
     values_at,
@@ -78,20 +78,6 @@ class OptimiseResult:
     before_finer: Margin
     after_finer: Margin
     climbs: tuple[dict[str, Any], ...]
-
-
-def climb(task: dict[str, Any], setting: dict[str, Any]) -> dict[str, Any]:
-    """One start climbs to the optimum of its valley. A task of `run_study`."""
-    model = load_source(setting["model"])
-    bounds = _bounds(model, setting["free"], setting["groups"], setting["values"])
-    found = improve(model, bounds, setting["points"], np.array(task["start"]), base=setting["values"])
-    return {
-        "factors": found.factors.tolist(),
-        "margin": found.margin,
-        "evaluations": found.evaluations,
-        "converged": found.converged,
-        "message": found.message,
-    }
 
 
 def optimise(
@@ -137,11 +123,15 @@ def optimise(
         begin = [[_place_of_file(bound) for bound in bounds]]
         begin += starts(start_count - 1, len(bounds), seed).tolist() if start_count > 1 else []
     setting = {
-        "model": source, "free": list(free), "groups": list(groups), "points": points, "values": base,
-    }  # fmt: skip
+        "model": source,
+        "variables": described([bound.variable for bound in bounds]),
+        "bounds": {bound.variable.name: [bound.low, bound.high] for bound in bounds},
+        "points": points,
+        "values": base,
+    }
     with study_errors(place):
         climbs = (options or RunOptions()).run(
-            [{"start": start} for start in begin], "rigctl.model.optimise:climb", setting
+            [{"start": start} for start in begin], "rigctl.model.study_tasks:climb", setting
         )
         best = max(climbs, key=lambda found: found["margin"])
         factors = np.array(best["factors"])

@@ -2,7 +2,7 @@
 
     study = scatter_study(Path("configs/brakes/model.toml"), "pressure", np.linspace(0, 30, 61), samples=1000)
 
-Job: `sample` (a task of the runner), `scatter_study` (tables, facts, figures). NOT its job: random factors,
+Job: `scatter`, and `scatter_study` with tables, facts and figures. NOT its job: random factors,
 intervals and correlations themselves (`sim_hardware.brake_model.scatter`), parallel running (`runner`).
 """
 
@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +29,7 @@ from rigctl.model.scatter_figures import (
     probability_table,
     samples_table,
 )
+from rigctl.model.study_tasks import described
 from sim_hardware.brake_model.first_onset import Scan, scan
 from sim_hardware.brake_model.linear import LinearModel, known
 from sim_hardware.brake_model.scatter import (
@@ -37,7 +37,6 @@ from sim_hardware.brake_model.scatter import (
     Law,
     Shares,
     Variable,
-    changed,
     check_law,
     draw,
     drivers,
@@ -75,22 +74,6 @@ class ScatterResult:
     squeal: Shares
     by_onset: Drivers
     by_frequency: Drivers
-
-
-def sample(task: dict[str, Any], setting: dict[str, Any]) -> dict[str, Any]:
-    """One random brake: onset, frequency, and at which values it is unstable ("0011…"). A task of
-    `run_study`.
-    """
-    model = load_source(setting["model"])
-    chosen = variables(model, setting["names"], setting["groups"])
-    factors = draw(generator(task), len(chosen), setting["spread"], setting["law"])
-    values = changed(model, chosen, factors, setting["values"])
-    found = scan(model, setting["over"], np.array(setting["grid"]), values)
-    return {
-        "onset": found.onset,
-        "frequency_hz": found.frequency_hz,
-        "unstable": "".join("1" if u else "0" for u in found.unstable),
-    }
 
 
 def scatter(
@@ -144,13 +127,12 @@ def scatter(
         "grid": [float(x) for x in values_over],
         "spread": spread,
         "law": law,
-        "names": None if names is None else list(names),
-        "groups": list(groups),
+        "variables": described(chosen),
         "values": dict(values or {}),
     }
     tasks = seeded([{} for _ in range(samples)], seed)
     with study_errors(place):
-        found = (options or RunOptions()).run(tasks, "rigctl.model.scatter:sample", setting)
+        found = (options or RunOptions()).run(tasks, "rigctl.model.study_tasks:sample", setting)
         factors = np.stack([draw(generator(task), len(chosen), spread, law) for task in tasks])
         onsets = np.array([np.inf if f["onset"] is None else f["onset"] for f in found])
         frequencies = np.array([np.nan if f["onset"] is None else f["frequency_hz"] for f in found])

@@ -290,6 +290,15 @@ class _Problem:
         return found.x, int(found.nit), bool(np.abs(found.jac).max() <= 100.0 * _GRADIENT_TOLERANCE)
 
 
+def fitted(logarithms: Sequence[float], covariance: Sequence[Sequence[float]], prior: Sequence[float]) -> Fit:
+    """The part of a fit that `chain` needs, put together again from numbers (nothing else is known of it)."""
+    spread, none = np.array(covariance), np.empty(0)
+    return Fit(
+        np.array(logarithms), np.array(prior), np.sqrt(np.diagonal(spread)), spread,
+        none, none, none, none, none, np.nan, np.nan, 0, True,
+    )  # fmt: skip
+
+
 def chain(
     model: LinearModel,
     chosen: Sequence[Variable],

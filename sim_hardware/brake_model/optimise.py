@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from sim_hardware.brake_model.eigen_systems import EigenSystem, eigen_system
 from sim_hardware.brake_model.linear import LinearModel, value_of
@@ -168,6 +167,8 @@ def starts(count: int, dimensions: int, seed: int) -> Array:
     """Starting points in the unit cube, (count, dimensions): a scrambled Sobol sequence; of a larger count
     the first ones are the same.
     """
+    from scipy.stats import qmc  # takes a second to load, which workers need not wait for
+
     power = max(0, int(np.ceil(np.log2(max(count, 1)))))
     return qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed)).random_base2(power)[:count]
 

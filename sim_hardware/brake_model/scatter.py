@@ -18,7 +18,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special, stats
+from scipy import special
 
 from sim_hardware.brake_model.linear import LinearModel, known, value_of
 
@@ -184,6 +184,8 @@ def drivers(factors: Array, outcome: Array, significance: float = 0.05) -> Drive
 
     The threshold is that of a single correlation at `significance` / k (Bonferroni), by Student's t.
     """
+    from scipy import stats  # takes a second to load, which workers need not wait for
+
     there = ~np.isnan(outcome)
     count, k = int(there.sum()), factors.shape[1]
     ranked = stats.rankdata(outcome[there]) if count else np.empty(0)

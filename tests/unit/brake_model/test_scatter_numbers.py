@@ -81,7 +81,7 @@ def test_spread_of_our_brakes_is_the_known_one():
     """brake-identification: ±5 % gives A 0.44 to 0.92 and 2373 to 2429 Hz, B 14.5 to 16.1 bar and 2113 to
     2169 Hz.
 
-    With 100 samples the 10 % and 90 % quantiles are uncertain by about a third of the width.
+    With 60 samples the 10 % and 90 % quantiles are uncertain by about a third of the width.
     """
     for model, over, grid, onset, frequency in (
         (BASIC, "mu", FRICTIONS, (0.44, 0.92), (2373.0, 2429.0)),
@@ -96,7 +96,7 @@ def test_spread_of_our_brakes_is_the_known_one():
                 changed(model, chosen, draw(random, len(chosen), 0.05, "uniform")),
                 whole=False,
             )
-            for _ in range(100)
+            for _ in range(60)
         ]
         onsets = [np.inf if s.onset is None else s.onset for s in found]
         frequencies = [s.frequency_hz for s in found if s.frequency_hz is not None]

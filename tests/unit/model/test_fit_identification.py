@@ -79,10 +79,10 @@ def test_model_is_brought_to_the_campaign(campaign, tmp_path):
 
 
 def test_samples_are_the_same_in_workers():
-    wanted = {"free": ["m_padi:0.02", "d_pis_t:0.05"], "samples": 8, "seed": 2}
+    wanted = {"free": ["m_padi:0.02", "d_pis_t:0.05"], "samples": 4, "seed": 2}
     here = identify(PLANT, by_hand(12.2, 2345.0), **wanted)
     there = identify(PLANT, by_hand(12.2, 2345.0), **wanted, options=RunOptions(workers=2))
-    assert here.predictions.shape == (4, 2, 2)
+    assert here.predictions.shape == (4, 1, 2)
     assert (here.logarithms == there.logarithms).all()
     assert (here.predictions == there.predictions).all()
 
@@ -124,7 +124,7 @@ def test_command_by_hand(tmp_path):
     assert "underdetermined: 1 of 2 combinations" in result.output
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"identify_parameters.png", "identify_predictions.svg", "identify.json"} <= names
-    assert onset_pressure(load_brake(target)).value == pytest.approx(12.5, abs=0.2)
+    assert onset_pressure(load_brake(target)).value == pytest.approx(12.5, abs=0.4)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from rigctl.model.scatter import scatter, scatter_study
 
 MODEL, BASIC = Path("configs/brakes/model.toml"), Path("configs/brakes/basic.toml")
 PRESSURES = np.linspace(10.0, 20.0, 11)
-FEW = ["scatter", str(MODEL), "--over", "pressure:10:20:11", "--samples", "24"]
+FEW = ["scatter", str(MODEL), "--over", "pressure:10:20:11", "--samples", "16"]
 
 
 @pytest.fixture(autouse=True)
@@ -48,8 +48,6 @@ def test_result_is_consistent_and_the_same_in_workers():
     assert (here.squeal.share <= here.squeal.high).all()
     assert here.squeal.share[0] == 0.0
     assert here.squeal.share[-1] == 1.0
-    other = scatter(MODEL, "pressure", PRESSURES, samples=16, seed=4, groups=["piston_damping"])
-    assert (other.onsets != here.onsets).any()
 
 
 def test_samples_are_real_brakes():
@@ -101,13 +99,13 @@ def test_stopped_by_ctrl_c_and_continued_by_the_same_command(run, monkeypatch, t
         patched.setattr(studies._ProgressView, "show", interrupt)
         stopped = run(FEW)
     assert stopped.exit_code == exit_codes.STOPPED
-    assert "of 24 tasks are kept in" in stopped.output
+    assert "of 16 tasks are kept in" in stopped.output
     assert "same command" in stopped.output
     seen = []
     monkeypatch.setattr(studies._ProgressView, "show", lambda self, progress: seen.append(progress))
     again = run([*FEW, "--out", str(tmp_path / "again")])
     assert again.exit_code == 0
-    assert 3 <= seen[-1].restored < 24
+    assert 3 <= seen[-1].restored < 16
     for name in ("scatter_samples.csv", "scatter.json", "scatter_probability.csv"):
         assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
     assert not list((tmp_path / "cache" / "rigctl" / "studies").iterdir())
