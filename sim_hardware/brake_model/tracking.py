@@ -33,6 +33,7 @@ MAX_HALVINGS = 16
 #: models with more degrees of freedom than this are tracked in a frequency band (`tracking_band`)
 DENSE_LIMIT = 200
 _EXTRA_POINTS = 2000
+_NEARLY_REAL = 0.05
 #: grid points where eigenvalues are nearer than this share of the largest are moved by a hair
 _MOVED = 1e-6
 
@@ -249,8 +250,8 @@ def _followed(start: Node, slots: NDArray[np.intp], link: _Link) -> tuple[NDArra
         modes = [m for m, pair in enumerate(slots) if set(pair.tolist()) & set(indices)]
         places = {m: complex(start.values[int(slots[m, 0])]) for m in modes}
         for group in _together(places):
-            if len(group) == 1 and slots[group[0], 1] >= 0:
-                continue  # the two real eigenvalues of one mode: they are one mode either way
+            if len(group) == 1 and abs(places[group[0]].imag) < _NEARLY_REAL * abs(places[group[0]]):
+                continue  # both eigenvalues of one mode meet: they are one mode either way
             events.append(Event(kind, middle, tuple(m + 1 for m in group), places[group[0]]))
     return moved, events
 

@@ -30,6 +30,8 @@ _UNLIKE = 0.5
 _MISSED = 0.5
 _FORBIDDEN = 1e6
 _ENDLESS = 1e100
+#: singular values of K below this share of the largest are zero
+_SINGULAR = 1e-12
 _SAMPLES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 
 
@@ -79,7 +81,7 @@ def evaluate(sampler: Sampler, points: Array, scale_1_s: float) -> list[Node]:
     values, right = (part.astype(np.complex128) for part in np.linalg.eig(state))
     left = _left(state, values, right)
     largest = np.maximum(np.abs(values).max(axis=1), 1e-300)[:, None]
-    values[np.abs(values) < COINCIDING * largest] = 0.0
+    values[_zero(values, largest, stiffness)] = 0.0
     values.imag[np.abs(values.imag) < _REAL * np.abs(values)] = 0.0
     # eq 24 for the pencil: dl = - y^T (l^2 dM + l dD + dK) x with y = w2^T M^-1, x = v1 / w0, w^T v = 1
     x = right[:, :n, :] / scale_1_s
@@ -99,6 +101,16 @@ def evaluate(sampler: Sampler, points: Array, scale_1_s: float) -> list[Node]:
         Node(s, values[k, :u], slopes[k, :u], right[k, :, :u], left[k, :u], c)
         for k, (s, u, c) in enumerate(zip(np.asarray(points).tolist(), used, n_complex, strict=True))
     ]
+
+
+def _zero(values: ComplexArray, largest: Array, stiffness: Array) -> NDArray[np.bool_]:
+    """Which eigenvalues are zero but for rounding: small ones, as many as a singular stiffness allows."""
+    small = np.abs(values) < COINCIDING * largest
+    for k in np.flatnonzero(small.any(axis=1)):
+        strengths = np.linalg.svd(stiffness[k], compute_uv=False)
+        allowed = 2 * int((strengths <= _SINGULAR * strengths[0]).sum())
+        small[k, np.argsort(np.abs(values[k]))[allowed:]] = False
+    return small
 
 
 def _left(state: Array, values: ComplexArray, right: ComplexArray) -> ComplexArray:

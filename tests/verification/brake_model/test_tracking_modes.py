@@ -262,6 +262,25 @@ def test_extremes_of_friction_track_without_trouble(basic: LinearBrake) -> None:
     )  # independent of mu
 
 
+def test_extreme_damping_keeps_slow_modes_apart_from_zero(basic: LinearBrake) -> None:
+    """Contacts like rock: four eigenvalues beyond 1e8 1/s, four creep at some 1/s, none is zero or
+    unstable.
+    """
+    locus = track(basic, "d_con", np.geomspace(1.0, 1e8, 17))
+    creeping = np.sort(locus.eigenvalues[-1].real)[-4:]
+    assert creeping == pytest.approx([-3.65, -2.39, -2.34, -1.52], abs=0.01)
+    assert [event.kind for event in locus.events] == ["split"] * 4 and locus.crossings == ()
+
+
+def test_undamped_brake_couples_exactly_where_the_damped_one_says(basic: LinearBrake) -> None:
+    """Without damping the two modes of Fig. 7 coincide; eq 24 on the damped model foretells the place."""
+    free = {name: 0.0 for name in basic.quantities if name.startswith("d_")}
+    (event,) = track(basic, "mu", np.linspace(0.0, 1.0, 21), free).events
+    assert event.kind == "exceptional" and event.modes == (7, 8)
+    foretold = mode_couplings(track(basic, "mu", np.linspace(0.47, 0.69, 23)))[0].exceptional_value
+    assert event.value == pytest.approx(foretold, abs=1e-3)
+
+
 def test_group_by_a_relative_factor_and_against_its_side(refined: LinearBrake) -> None:
     signs = {"c_con_il": 1.0, "c_con_it": -1.0}
     locus = track(refined, signs, [0.9, 1.0, 1.1], {"mu": 0.5})
