@@ -134,7 +134,7 @@ class BatchIntegrator:
         if self.n_pads != layout.PADS:
             raise ValueError(
                 f"brake '{first.name}' has {self.n_pads} friction groups; the batch is made for "
-                f"{layout.PADS} (two rigid pads): integrate each braking with SquealIntegrator"
+                f"{layout.PADS} (two rigid pads): use batch_serial.batch_of, or SquealIntegrator"
             )
         for brake, system in zip(self.brakes, self._systems, strict=True):
             pads = tuple(group.pad for group in system.groups)
@@ -297,12 +297,12 @@ class BatchIntegrator:
         flat = np.zeros((layout.OPERATION_ROWS, self._groups * layout.LANES))
         flat[4] = 1.0
         steps = max(n_out, 1) * self.substeps
-        for i, (name, value) in enumerate(zip(_WORKING_POINT, values, strict=True)):
-            start, end = _ends(name, value, self.lanes)
+        for i, (name, value) in enumerate(zip(WORKING_POINT, values, strict=True)):
+            start, end = ends(name, value, self.lanes)
             flat[2 * i, : self.lanes] = start
             flat[2 * i + 1, : self.lanes] = (end - start) / steps
         if saturation_m_s is not None:
-            saturation = _lanes("saturation_m_s", saturation_m_s, self.lanes)
+            saturation = per_lane("saturation_m_s", saturation_m_s, self.lanes)
             if not (saturation > 0.0).all():
                 raise ValueError(
                     f"saturation_m_s is {saturation_m_s!r}; give positive speeds, infinite or None"
@@ -439,23 +439,24 @@ class BatchIntegrator:
         self._fresh[:] = False
 
 
-_WORKING_POINT = ("normal_force_n", "mu", "slip_m_s", "k_s_m")
+WORKING_POINT = ("normal_force_n", "mu", "slip_m_s", "k_s_m")
 _NOT_NEGATIVE = ("normal_force_n", "slip_m_s")
 
 
-def _lanes(name: str, value: ArrayLike, lanes: int) -> Array:
+def per_lane(name: str, value: ArrayLike, lanes: int) -> Array:
+    """Values (lanes,) of one for all or one each."""
     given = np.asarray(value, dtype=float)
     if given.shape not in ((), (lanes,)):
         raise ValueError(f"{name} has the shape {given.shape}; give one value or ({lanes},)")
     return np.broadcast_to(given, (lanes,))
 
 
-def _ends(name: str, value: PerLane, lanes: int) -> tuple[Array, Array]:
+def ends(name: str, value: PerLane, lanes: int) -> tuple[Array, Array]:
     """Values (lanes,) at start and end of a call."""
     pair = value if isinstance(value, tuple) else (value, value)
     if len(pair) != 2:
         raise ValueError(f"{name} is a tuple of {len(pair)}; give (start, end), or an array for the lanes")
-    start, end = _lanes(name, pair[0], lanes), _lanes(name, pair[1], lanes)
+    start, end = per_lane(name, pair[0], lanes), per_lane(name, pair[1], lanes)
     least = min(float(start.min()), float(end.min()))
     if not (np.isfinite(start).all() and np.isfinite(end).all()) or (name in _NOT_NEGATIVE and least < 0.0):
         raise ValueError(f"{name} is {value!r}; give finite values, pad force and slip >= 0")

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sim_hardware.brake_model.assembly import Array, Brake
-from sim_hardware.brake_model.batch import BatchIntegrator
+from sim_hardware.brake_model.batch_serial import batch_of
 from sim_hardware.brake_model.modal import Complex, friction_groups
 from sim_hardware.brake_model.stability import PA_PER_BAR
 
@@ -249,7 +249,7 @@ class SquealSimulation:
         sums[-1, len(own) :] = np.array(list(radiating.values()))
         self.n_pads = len(pads)
         brakes = points.brakes if len(points.brakes) > 1 else points.brake(0)
-        self.batch = BatchIntegrator(brakes, len(points), outputs=names, weights=sums)
+        self.batch = batch_of(brakes, len(points), outputs=names, weights=sums)
 
     def limit_cycles(self, start: Start | Array = "small", *, longest_s: float = 6.0) -> LimitCycles:
         """Run until all amplitudes are steady, `longest_s` at most, and measure.

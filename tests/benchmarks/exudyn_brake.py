@@ -1,7 +1,7 @@
 """The brake in Exudyn, as a peer of the benchmarks: the same matrices and friction, its own integrators.
 
 One ObjectGenericODE2 with M, K(mu), D(mu) of the brake. Friction beyond the linear part, (mu(v) - mu)
-(N0 + N~) with the saturating law of `friction`, is one more ObjectGenericODE2 per pad, on the nodes of pad and
+(N0 + N~) with the saturating law of `friction`, is one more ObjectGenericODE2 per pad, on nodes of pad and
 disc, with a force user function: by default a symbolic one, which Exudyn evaluates in C++ without calling
 Python. While the pads slide forwards the law is smooth and needs no regularisation; sticking and lift-off are
 not in it, and do not happen in the motion that is measured. The Jacobian is that of the matrices and kept

@@ -8,6 +8,7 @@ import pytest
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.batch import BatchIntegrator
+from sim_hardware.brake_model.batch_serial import SerialBatch, batch_of
 from sim_hardware.brake_model.integrator import SquealIntegrator
 
 PLANT = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "plant.toml")
@@ -226,16 +227,49 @@ def test_wrong_input_is_refused() -> None:
         batch.states = np.zeros((2, N))
 
 
-def test_brakes_that_do_not_fit_are_refused_with_the_remedy() -> None:
+def three_groups() -> Brake:
+    """The plant with a contact at another height: its pad then slides along two lines."""
     spec = PLANT.spec
     contact = next(c for c in spec.couplings if c.kind == "contact")
-    other_side = contact.between[0].split(".")[0] + ".piston_l"  # another height, another line of sliding
-    alone = contact.model_copy(update={"between": (other_side, contact.between[1])})
-    changed = spec.model_copy(
-        update={"couplings": tuple(alone if c is contact else c for c in spec.couplings)}
+    moved = contact.model_copy(
+        update={"between": (contact.between[0].split(".")[0] + ".piston_l", contact.between[1])}
     )
-    with pytest.raises(ValueError, match=r"3 friction groups.*SquealIntegrator"):
-        BatchIntegrator(Brake(changed), 2)
+    couplings = tuple(moved if c is contact else c for c in spec.couplings)
+    return Brake(spec.model_copy(update={"couplings": couplings}))
+
+
+def test_brakes_that_do_not_fit_are_refused_with_the_remedy_and_run_one_by_one() -> None:
+    brake = three_groups()
+    with pytest.raises(ValueError, match=r"3 friction groups.*batch_of"):
+        BatchIntegrator(brake, 2)
+    with pytest.raises(ValueError, match="differ"):
+        BatchIntegrator([PLANT, Brake(PLANT.spec.model_copy(update={"couplings": brake.spec.couplings}))])
+    sums = np.eye(len(NAMES))
+    assert isinstance(batch_of(PLANT, 2, outputs=NAMES, weights=sums), BatchIntegrator)
+    batch = batch_of(brake, 3, outputs=NAMES, weights=sums)
+    states = starts(3)
+    batch.states = states
+    y = batch.advance(100, **SQUEALING)
+    for lane in range(3):
+        expected, state = singly(lane, states[lane], 100, SQUEALING, brake=brake)
+        np.testing.assert_array_equal(y[:, lane], expected)
+        np.testing.assert_array_equal(batch.states[lane], state)
+    rest = batch.observe(200, **SQUEALING, columns=1)
+    assert rest.rms.shape == (3, 1) and (rest.rms > 0.0).all()
+
+
+def test_serial_lanes_are_those_of_the_batch() -> None:
+    sums = np.eye(len(NAMES))
+    batches = [made(PLANT, 3, outputs=NAMES, weights=sums) for made in (BatchIntegrator, SerialBatch)]
+    found = []
+    for batch in batches:
+        states = starts(3)
+        states[1] *= 1e200
+        batch.states = states
+        found.append(batch.observe(200, **SQUEALING))
+        assert batch.lost.tolist() == [False, True, False]
+    np.testing.assert_allclose(found[1].rms, found[0].rms, rtol=1e-9)
+    np.testing.assert_allclose(found[1].frequency_hz, found[0].frequency_hz, rtol=1e-9)
 
 
 def test_several_sums_of_outputs_and_the_first_columns_only() -> None:
