@@ -29,7 +29,8 @@ from sim_hardware.brake_model.boundary_newton import (
 )
 from sim_hardware.brake_model.directions import Direction, direction
 from sim_hardware.brake_model.linear import LinearModel, Matrices, ParameterGroup
-from sim_hardware.brake_model.secular import grid_eigenvalues, sorted_eigenvalues
+from sim_hardware.brake_model.secular import grid_eigenvalues
+from sim_hardware.brake_model.secular_equation import sorted_eigenvalues
 from sim_hardware.brake_model.variations import Variation
 
 Array = NDArray[np.float64]
@@ -213,7 +214,8 @@ class _Scan:
         self._model, self._way, self._base = model, way, base
         self._grid = np.linspace(low, high, steps + 1)
         first = self._at(low).state_matrix()
-        self._values = grid_eigenvalues(lambda t, _: self._at(t), self._grid, np.zeros(1)).values[0]
+        solved = grid_eigenvalues(lambda t, _: self._at(t), self._grid, np.zeros(1), method="lapack")
+        self._values = solved.values[0]
         self._free = free_motions(sorted_eigenvalues(np.linalg.eigvals(first))[None])
         self.points = len(self._grid)
         self.starts_unstable = bool(growing(self._values[:1], self._free)[0])

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_hardware.brake_model.linear import Matrices
-from sim_hardware.brake_model.secular import Interval, SecularEquation
-from sim_hardware.brake_model.secular_kernels import cross_rows
+from sim_hardware.brake_model.secular_equation import Interval, SecularEquation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -115,6 +114,8 @@ def secular_crossings(
     -------
     (m,) t, (m,) omega (0: divergence), (m,) whether found within its cell
     """
+    from sim_hardware.brake_model.secular_kernels import cross_rows  # here: eq 24 does without numba
+
     numerators, interval = lines
     ends = interval.scaled(cells)
     index = np.arange(len(ends))

@@ -1,8 +1,8 @@
 """Compiled: eigenvalues along a line of points as roots of a secular equation, continued from point to point.
 
-The equation (see `secular`): F(l) = 1 + sum_j (c_j l + e_j) / (l^2 - a_j l + b_j) = 0, one real quadratic for
-each pair of nodes. Every root is predicted from its past, corrected by Newton, and all of them are guarded
-together.
+The equation (see `secular_equation`): F(l) = 1 + sum_j (c_j l + e_j) / (l^2 - a_j l + b_j) = 0, one real
+quadratic for each pair of nodes. Every root is predicted from its past, corrected by Newton, and all of them
+are guarded together.
 NOT its job: building coefficients, LAPACK for the points flagged here (`secular`).
 """
 
@@ -16,26 +16,16 @@ from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from sim_hardware.brake_model.simd import (
-    add,
-    divide,
-    load8,
-    multiply,
-    multiply_add,
-    negative_multiply_add,
-    splat8,
-    subtract,
-    zero8,
-)
+from sim_hardware.brake_model import simd as _simd
+from sim_hardware.brake_model.secular import FLAGGED, HISTORY, SOLVED
+from sim_hardware.brake_model.secular_equation import LANES
 
 Array = NDArray[np.float64]
+#: numba's intrinsics: their Python signatures are not those of the compiled code
+simd: Any = _simd
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-#: tables of terms are padded to a multiple of this
-LANES = 8
 _INDEX = ir.IntType(32)
-#: most past points a root is predicted from
-HISTORY = 6
 #: last correction of a root, relative to it; Newton then leaves its square
 _STEP = 3e-8
 _STEPS = 6
@@ -47,11 +37,9 @@ _SWEEPS = 40
 #: a pair this near to the real axis, relative to its magnitude, is not decided here
 _REAL = 1e-7
 
-SOLVED, FLAGGED = 0, 1
-
 
 @intrinsic
-def total(typing_context: Any, a: Any) -> Any:
+def _total(typing_context: Any, a: Any) -> Any:
     """Return the sum of all lanes of a vector (`simd`), halves added to halves."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -72,31 +60,34 @@ def total(typing_context: Any, a: Any) -> Any:
     return types.float64(a), code
 
 
+reduced: Any = _total
+
+
 @njit(**OPTIONS)
 def _secular(
     re: float, im: float, a: Array, b: Array, c: Array, e: Array
 ) -> tuple[float, float, float, float]:
     """F and F' at re + i im; all tables in lanes of eight, padded with terms that are zero."""
-    x, y, one = splat8(re), splat8(im), splat8(1.0)
-    square_x, square_y = splat8(re * re - im * im), splat8(2.0 * re * im)
-    twice_x, twice_y = splat8(2.0 * re), splat8(2.0 * im)
-    f_x, f_y, g_x, g_y = zero8(), zero8(), zero8(), zero8()
+    x, y, one = simd.splat8(re), simd.splat8(im), simd.splat8(1.0)
+    square_x, square_y = simd.splat8(re * re - im * im), simd.splat8(2.0 * re * im)
+    twice_x, twice_y = simd.splat8(2.0 * re), simd.splat8(2.0 * im)
+    f_x, f_y, g_x, g_y = simd.zero8(), simd.zero8(), simd.zero8(), simd.zero8()
     for j in range(0, a.size, LANES):
-        a_j, c_j = load8(a, j), load8(c, j)
-        q_x = negative_multiply_add(a_j, x, add(square_x, load8(b, j)))
-        q_y = negative_multiply_add(a_j, y, square_y)
-        inverse = divide(one, multiply_add(q_x, q_x, multiply(q_y, q_y)))
-        q_x, q_y = multiply(q_x, inverse), multiply(q_y, inverse)  # 1 / q = q_x - i q_y
-        n_x, n_y = multiply_add(c_j, x, load8(e, j)), multiply(c_j, y)
-        t_x = multiply_add(n_x, q_x, multiply(n_y, q_y))
-        t_y = negative_multiply_add(n_x, q_y, multiply(n_y, q_x))
-        s_x = subtract(twice_x, a_j)
-        u_x = multiply_add(t_y, twice_y, negative_multiply_add(t_x, s_x, c_j))
-        u_y = multiply_add(t_x, twice_y, multiply(t_y, s_x))  # F' of a term: (u_x - i u_y) / q
-        f_x, f_y = add(f_x, t_x), add(f_y, t_y)
-        g_x = add(g_x, negative_multiply_add(u_y, q_y, multiply(u_x, q_x)))
-        g_y = subtract(g_y, multiply_add(u_y, q_x, multiply(u_x, q_y)))
-    return 1.0 + total(f_x), total(f_y), total(g_x), total(g_y)
+        a_j, c_j = simd.load8(a, j), simd.load8(c, j)
+        q_x = simd.negative_multiply_add(a_j, x, simd.add(square_x, simd.load8(b, j)))
+        q_y = simd.negative_multiply_add(a_j, y, square_y)
+        inverse = simd.divide(one, simd.multiply_add(q_x, q_x, simd.multiply(q_y, q_y)))
+        q_x, q_y = simd.multiply(q_x, inverse), simd.multiply(q_y, inverse)  # 1 / q = q_x - i q_y
+        n_x, n_y = simd.multiply_add(c_j, x, simd.load8(e, j)), simd.multiply(c_j, y)
+        t_x = simd.multiply_add(n_x, q_x, simd.multiply(n_y, q_y))
+        t_y = simd.negative_multiply_add(n_x, q_y, simd.multiply(n_y, q_x))
+        s_x = simd.subtract(twice_x, a_j)
+        u_x = simd.multiply_add(t_y, twice_y, simd.negative_multiply_add(t_x, s_x, c_j))
+        u_y = simd.multiply_add(t_x, twice_y, simd.multiply(t_y, s_x))  # F' of a term: (u_x - i u_y) / q
+        f_x, f_y = simd.add(f_x, t_x), simd.add(f_y, t_y)
+        g_x = simd.add(g_x, simd.negative_multiply_add(u_y, q_y, simd.multiply(u_x, q_x)))
+        g_y = simd.subtract(g_y, simd.multiply_add(u_y, q_x, simd.multiply(u_x, q_y)))
+    return 1.0 + reduced(f_x), reduced(f_y), reduced(g_x), reduced(g_y)
 
 
 @njit(**OPTIONS)

@@ -30,7 +30,8 @@ from sim_hardware.brake_model.boundary_newton import crossing_between, secular_c
 from sim_hardware.brake_model.linear import Matrices
 from sim_hardware.brake_model.maps import eigenvalue_map
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.secular import grid_eigenvalues, sorted_eigenvalues
+from sim_hardware.brake_model.secular import grid_eigenvalues
+from sim_hardware.brake_model.secular_equation import sorted_eigenvalues
 
 BRAKES = Path(__file__).parents[2] / "configs" / "brakes"
 SLOPE = 0.0576

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.linear import Matrices
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.secular import grid_eigenvalues, prediction_weights, sorted_eigenvalues
+from sim_hardware.brake_model.secular import grid_eigenvalues, prediction_weights
+from sim_hardware.brake_model.secular_equation import sorted_eigenvalues
 
 BRAKES = {name: load_brake(Path(__file__).parents[3] / f"configs/brakes/{name}.toml") for name in
           ("basic", "model", "plant")}  # fmt: skip
@@ -203,3 +204,30 @@ def test_singular_mass_matrix_is_refused() -> None:
             np.array([1.0, 2.0]),
             np.array([1.0]),
         )
+
+
+def test_a_dependence_that_interpolation_points_do_not_see() -> None:
+    """Even in x and of degree 4: at the four points tried first its highest term is zero."""
+    stiffness = np.diag([1.0, 1.7, 2.9, 4.1])
+    across = np.zeros((4, 4))
+    across[:2, 2:] = [[0.9, -0.4], [0.3, 0.8]]
+    across[2:, :2] = [[-0.7, 0.2], [0.5, -0.6]]
+
+    def at(x: float, y: float) -> Matrices:
+        return Matrices(np.eye(4), (0.05 + y) * np.eye(4), stiffness + x * across)
+
+    xs, ys = np.linspace(-1.0, 1.0, 41), np.linspace(0.0, 0.1, 9)
+    result = grid_eigenvalues(at, xs, ys, method="secular")
+    assert result.method == "secular"
+    assert result.equation is not None
+    assert result.equation.numerators.shape[2] == 5
+    assert_equal(result.values, lapack(at, xs, ys), 1e-8)
+
+
+def test_a_model_too_large_for_the_secular_equation_goes_to_lapack() -> None:
+    at = chain(61, 1e-3)
+    xs, ys = np.linspace(0.0, 0.2, 9), np.linspace(0.0, 1.0, 9)
+    result = grid_eigenvalues(at, xs, ys)
+    assert (result.method, result.fallback_share) == ("lapack", 0.0)
+    assert "eigenvalues" in result.reason
+    assert result.values.shape == (9, 9, 122)
