@@ -119,22 +119,13 @@ def modes_study(
     )
 
 
-def animate(
-    model: LinearModel,
-    folder: Path,
-    kinds: Sequence[str] = ("gif", "html"),
-    number: int | None = None,
-    near_hz: float | None = None,
-    values: Mapping[str, float] | None = None,
-    *,
-    name: str = "mode",
-) -> list[Path]:
-    """Write animations of a mode: "gif", "html" (page with all modes to choose from), "mp4" (needs ffmpeg).
+def check_animations(model: LinearModel, kinds: Sequence[str]) -> None:
+    """Refuse animations that cannot be made, before anything is computed.
 
     Raises
     ------
     ConfigError
-        unknown kind, no geometry, no ffmpeg, or the folder cannot be written
+        unknown kind, no geometry, no ffmpeg for "mp4"
     """
     unknown = [kind for kind in kinds if kind not in ANIMATIONS]
     if unknown:
@@ -148,8 +139,32 @@ def animate(
             place="--animate", value=model.name,
             remedy="Leave --animate out: bars of the freedoms are drawn.",
         )  # fmt: skip
+    if "mp4" in kinds:
+        _encoder()
+
+
+def animate(
+    model: LinearModel,
+    folder: Path,
+    kinds: Sequence[str] = ("gif", "html"),
+    number: int | None = None,
+    near_hz: float | None = None,
+    values: Mapping[str, float] | None = None,
+    *,
+    band_hz: tuple[float, float] | None = None,
+    name: str = "mode",
+) -> list[Path]:
+    """Write animations of a mode: "gif", "html" (page with all modes to choose from), "mp4" (needs ffmpeg).
+
+    Raises
+    ------
+    ConfigError
+        unknown kind, no geometry, no ffmpeg, or the folder cannot be written
+    """
+    check_animations(model, kinds)
+    assert isinstance(model, LinearBrake)  # checked
     encoder = _encoder() if "mp4" in kinds else ""
-    shapes = mode_shapes(model, values)
+    shapes = mode_shapes(model, values, band_hz)
     shape = find_shape(shapes, number, near_hz)
     picture = draw_brake(model, values)
     paths = []
@@ -380,13 +395,14 @@ def _couplings(shares: Participation) -> Table:
 
 
 def _freedoms(shape: ModeShape) -> Table:
+    order = np.argsort(-np.abs(shape.vector), kind="stable").tolist()
     return Table(
         "freedoms",
-        "Degrees of freedom",
+        "Degrees of freedom, the largest first",
         (
-            Column("freedom", "", list(shape.freedoms)),
-            Column("amplitude", "", np.abs(shape.vector).tolist()),
-            Column("phase", "deg", np.degrees(np.angle(shape.vector)).tolist()),
+            Column("freedom", "", [shape.freedoms[k] for k in order]),
+            Column("amplitude", "", np.abs(shape.vector[order]).tolist()),
+            Column("phase", "deg", np.degrees(np.angle(shape.vector[order])).tolist()),
         ),
     )
 

@@ -58,7 +58,7 @@ def modes(
     rigctl model modes configs/brakes/basic.toml --set mu=0.64 --near 2400 --out results --animate gif,html
     """
     from rigctl.model.loading import read_model, study_errors
-    from rigctl.model.modes import animate, modes_study
+    from rigctl.model.modes import animate, check_animations, modes_study
 
     if pair is not None and near is not None:
         raise ConfigError(
@@ -71,9 +71,11 @@ def modes(
     values = parse_settings(settings)
     loaded = read_model(model)
     with study_errors(str(model)):
+        kinds = [kind.strip() for kind in (animation or "").split(",") if kind.strip()]
+        if kinds:
+            check_animations(loaded, kinds)
         study = modes_study(loaded, pair, near, values, band_hz=band)
         finish(study, out, formats)
-        if animation and out is not None:
-            kinds = [kind.strip() for kind in animation.split(",") if kind.strip()]
-            for path in animate(loaded, out, kinds, pair, near, values):
+        if kinds and out is not None:
+            for path in animate(loaded, out, kinds, pair, near, values, band_hz=band):
                 console().print(f"animation: {path}")
