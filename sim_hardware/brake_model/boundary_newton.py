@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_hardware.brake_model.linear import Matrices
+from sim_hardware.brake_model.secular import SMALL
 from sim_hardware.brake_model.secular_equation import Interval, SecularEquation
 
 Array = NDArray[np.float64]
@@ -26,8 +27,6 @@ WithDerivative = Callable[[float], tuple[Matrices, Matrices]]
 
 #: real parts up to this share of the largest modulus are on the axis
 ON_AXIS = 1e-9
-#: eigenvalues below this share of the largest modulus are motions without any restoring force
-_FREE = 1e-6
 #: Newton's last step, relative: its square is rounding; width of a bracket that can only be halved
 _AT_REST, _NARROW = 1e-9, 1e-14
 _ITERATIONS = 100
@@ -154,7 +153,7 @@ def eigenvalue_rate(matrices: Matrices, change: Matrices, value: complex) -> com
 def free_motions(values: Complex) -> int:
     """Number of eigenvalues (..., n) that are 0 but for rounding everywhere: bodies without couplings."""
     size = np.abs(values)
-    return int((size <= _FREE * size.max(axis=-1, keepdims=True)).sum(axis=-1).min())
+    return int((size <= SMALL * size.max(axis=-1, keepdims=True)).sum(axis=-1).min())
 
 
 def without_free(values: Complex, free: int) -> Complex:

@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_hardware.brake_model.rigid_body import eigenvalues
 from sim_hardware.brake_model.secular_equation import (
     Array,
     Complex,
@@ -44,6 +45,8 @@ _LARGEST = 120
 #: more than this share flagged: LAPACK for all
 _HOPELESS = 0.6
 _CHUNK = 2048
+#: eigenvalues below this part of the largest may be those of rigid-body motions
+SMALL = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,10 +204,16 @@ def _half(values: Complex) -> tuple[Array, int]:
 def _by_lapack(
     matrices: MatrixSurface, xs: Array, ys: Array, where: NDArray[np.bool_], values: Complex
 ) -> None:
+    """Fill in the eigenvalues of some points; those of rigid-body motions are exactly 0."""
     rows, columns = np.nonzero(where)
     for first in range(0, len(rows), _CHUNK):
         r, c = rows[first : first + _CHUNK], columns[first : first + _CHUNK]
-        values[r, c] = sorted_eigenvalues(np.linalg.eigvals(matrices(xs[c], ys[r])))
+        sampled = matrices(xs[c], ys[r])
+        found = np.linalg.eigvals(sampled).astype(np.complex128)
+        size = np.abs(found)
+        for i in np.flatnonzero(size.min(axis=1) < SMALL * size.max(axis=1)):
+            found[i] = eigenvalues(sampled[i])
+        values[r, c] = sorted_eigenvalues(found)
 
 
 def prediction_weights(points: Array) -> Array:

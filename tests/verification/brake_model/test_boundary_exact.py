@@ -24,6 +24,7 @@ from sim_hardware.brake_model.boundary_newton import eigenvalue_rate
 from sim_hardware.brake_model.directions import direction
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, known
 from sim_hardware.brake_model.parametric import LinearBrake
+from sim_hardware.brake_model.stability import onset_mu, onset_pressure
 from sim_hardware.brake_model.variations import variation
 
 BRAKES = {name: LinearBrake(load_brake(Path(__file__).parents[3] / f"configs/brakes/{name}.toml")) for name in
@@ -152,6 +153,26 @@ def test_at_the_boundary_one_pair_lies_on_the_axis(
         for s in (-step, step)
     ]
     assert found.point.rate_1_s == pytest.approx((moved_on[1] - moved_on[0]) / (2.0 * step), rel=1e-4)
+
+
+def test_it_agrees_with_the_plain_search_of_the_prediction() -> None:
+    for name, model in BRAKES.items():
+        for moved, top, plain in (("pressure", 25.0, onset_pressure), ("mu", 1.0, onset_mu)):
+            found, wanted = stability_boundary(model, moved, 0.0, top).point, plain(model.brake)
+            assert (found is None) == (wanted is None), name
+            if found is not None and wanted is not None:
+                assert found.value == pytest.approx(wanted.value, rel=1e-7)
+                assert found.frequency_hz == pytest.approx(wanted.frequency_hz, rel=1e-7)
+
+
+def test_a_body_without_couplings_is_no_instability() -> None:
+    base = Matrices(np.eye(3), np.diag([0.1, 0.1, 0.0]), np.diag([1.0, 2.0, 0.0]))
+    change = Matrices(np.zeros((3, 3)), np.zeros((3, 3)), np.diag([-1.0, 0.0, 0.0]))
+    found = stability_boundary(Affine(base, change), "t", 0.0, 3.0)
+    assert not found.starts_unstable
+    assert found.point is not None
+    assert found.point.value == pytest.approx(1.0, rel=1e-6)
+    assert stability_boundary(Affine(base, change), "t", 0.0, 0.9).point is None
 
 
 def test_unstable_from_the_start_gives_where_stability_is_regained() -> None:

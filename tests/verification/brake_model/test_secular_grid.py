@@ -154,13 +154,15 @@ def test_undamped_systems(damping: float) -> None:
 
 
 def test_rigid_body_motion_is_left_to_lapack() -> None:
-    """An eigenvalue 0 that is double and defective, at every point."""
+    """An eigenvalue 0 at every point, double and defective where no damper holds the chain (y = 0)."""
     at = chain(5, 1e-3, friction=False, ground=0.0)
     xs, ys = np.linspace(0.0, 1.0, 20), np.linspace(0.0, 5.0, 20)
     result = grid_eigenvalues(at, xs, ys)
     assert result.method == "lapack"
     assert result.reason
     assert_equal(result.values[..., 2:], lapack(at, xs, ys)[..., 2:])
+    assert np.all(result.values[0, :, :2] == 0.0)
+    assert np.all(result.values[1:].real.max(axis=-1) < 1e-6)
 
 
 def test_two_equal_systems_have_coinciding_eigenvalues() -> None:
