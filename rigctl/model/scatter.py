@@ -173,7 +173,7 @@ def scatter_study(
     )  # fmt: skip
     model = load_source(model_source(path))
     unit = _unit(model, over)
-    what = f"{over} [{unit}]" if unit else over
+    what = f"{over} ({unit})" if unit else over
     percent = f"{100 * spread:g} %"
     law_text = (
         f"uniform within ±{percent}" if law == "uniform" else f"lognormal, standard deviation {percent}"
