@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from rigctl.analysis.style import BLUE, GREEN, GREY, ORANGE, VERMILION
 from rigctl.model.output import Study, Table
-from rigctl.model.sensitivity import STEP, design
+from rigctl.model.sensitivity import STEP, Band, design
 from rigctl.model.sensitivity_figures import ranking_figure
 from rigctl.model.sensitivity_tables import column
 from sim_hardware.brake_model.linear import MU, LinearModel
@@ -43,6 +43,7 @@ def recommendation_study(
     step: float = STEP,
     below_hz: float = 5000.0,
     pressure_max_bar: float = 60.0,
+    band_hz: Band = None,
 ) -> Study:
     """Rank all modifications by how much they lower the real parts below a frequency without harm elsewhere.
 
@@ -53,6 +54,7 @@ def recommendation_study(
     step : share by which group members change
     below_hz : squeal range that counts
     pressure_max_bar : the onset of squeal is searched up to here, where friction falls with speed
+    band_hz : only the eigenvalues of a frequency band, and no onset (large models)
 
     Raises
     ------
@@ -70,7 +72,9 @@ def recommendation_study(
     rule = RecommendationRule(below_hz=below_hz)
     variations = all_variations(model, step, groups=dict.fromkeys(names))
     points = tuple(mus) if MU in model.quantities else ()
-    found = recommend(model, variations, values, mus=points, pressure_max_bar=pressure_max_bar, rule=rule)
+    found = recommend(
+        model, variations, values, mus=points, pressure_max_bar=pressure_max_bar, rule=rule, band_hz=band_hz
+    )
     verdicts = {verdict: found.verdicts.count(verdict) for verdict in VERDICTS}
     onset = found.onset
     facts: dict[str, Any] = {

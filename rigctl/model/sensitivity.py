@@ -33,11 +33,11 @@ from rigctl.model.sensitivity_tables import (
     ranking_table,
 )
 from sim_hardware.brake_model.effects import Influence, influence, one_of_each_pair
+from sim_hardware.brake_model.eigen_systems import EigenSystem
 from sim_hardware.brake_model.linear import MU, LinearModel
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.robustness import Robustness, robustness
 from sim_hardware.brake_model.sensitivity import (
-    EigenSystem,
     Sensitivities,
     eigen_sensitivities,
     parameter_names,
@@ -49,6 +49,8 @@ _TOP = 20
 _MOST_PANELS = 8
 
 Values = Mapping[str, float]
+#: frequency band in Hz for large models, None for all eigenvalues
+Band = tuple[float, float] | None
 
 
 def design(model: LinearModel, values: Values | None) -> tuple[LinearModel, dict[str, float]]:
@@ -71,6 +73,7 @@ def sensitivity_study(
     pair: int | None = None,
     near_hz: float | None = None,
     places: bool = False,
+    band_hz: Band = None,
 ) -> Study:
     """Eq 24: which quantities move an eigenvalue pair, ranked by the change of its real part for 1 % more of
     each.
@@ -91,7 +94,7 @@ def sensitivity_study(
         unknown quantity, singular M
     """
     model, values = design(model, values)
-    found = eigen_sensitivities(model, parameter_names(model, places=places), values)
+    found = eigen_sensitivities(model, parameter_names(model, places=places), values, band_hz=band_hz)
     system = found.system
     kept = one_of_each_pair(system.values)
     number = _choose(system, kept, pair, near_hz)
@@ -132,6 +135,7 @@ def robustness_study(
     high: float = 0.6,
     step: float = STEP,
     below_hz: float = BELOW_HZ,
+    band_hz: Band = None,
 ) -> Study:
     """Eq 25 for the design as it is (Fig. 8) and for all its modifications (Fig. 9).
 
@@ -140,7 +144,7 @@ def robustness_study(
     KeyError, ValueError
         the model has no friction, impossible values
     """
-    found = robustness_of(model, values, low, high, step)
+    found = robustness_of(model, values, low, high, step, band_hz)
     positions = positions_of(found)
     drawn = {"basic": lambda: figures.robustness_figure(found, below_hz)}
     if positions:
@@ -165,6 +169,7 @@ def influence_study(
     modes: Sequence[Mode] = MODES,
     mu: float | None = 0.4,
     step: float = STEP,
+    band_hz: Band = None,
 ) -> Study:
     """Change of all real parts by modifications of some groups (all where none is named), with effect
     classes.
@@ -184,7 +189,7 @@ def influence_study(
         g.name for g in model.groups
     ]
     chosen = all_variations(model, step, groups=dict.fromkeys(names), modes=modes)
-    found = influence(model, chosen, values, mu=mu if MU in model.quantities else None)
+    found = influence(model, chosen, values, mu=mu if MU in model.quantities else None, band_hz=band_hz)
     largest = np.abs(found.changes).max(axis=1, initial=0.0)
     panels = sorted(np.argsort(-largest, kind="stable")[:_MOST_PANELS].tolist())
     title = f"{model.name}: change of real parts by {100.0 * step:g} % changes" + (
@@ -244,14 +249,14 @@ def positions_of(found: Robustness) -> list[int]:
 
 
 def robustness_of(
-    model: LinearModel, values: Values | None, low: float, high: float, step: float
+    model: LinearModel, values: Values | None, low: float, high: float, step: float, band_hz: Band = None
 ) -> Robustness:
     model, values = design(model, values)
     if MU not in model.quantities:
         raise ValueError(
             f"the model '{model.name}' has no friction (quantity 'mu'): give parts that scale with it"
         )
-    return robustness(model, all_variations(model, step), values, low=low, high=high)
+    return robustness(model, all_variations(model, step), values, low=low, high=high, band_hz=band_hz)
 
 
 def _choose(system: EigenSystem, kept: Any, pair: int | None, near_hz: float | None) -> int:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sim_hardware.brake_model.linear import MU, LinearModel
 from sim_hardware.brake_model.resolving import Resolved, resolve
+from sim_hardware.brake_model.resolving_band import resolve_in_band
 from sim_hardware.brake_model.variations import Variation
 
 Array = NDArray[np.float64]
@@ -138,6 +139,7 @@ def influence(
     *,
     mu: float | None = 0.4,
     rule: EffectRule = RULE,
+    band_hz: tuple[float, float] | None = None,
 ) -> Influence:
     """Delta Re of all eigenvalues by modifications at constant friction, with effect classes.
 
@@ -145,13 +147,17 @@ def influence(
     ----------
     values : other values that differ from the file's
     mu : coefficient of friction; None for models without
+    band_hz : only the eigenvalues of a frequency band (large models)
 
     Raises
     ------
     KeyError, ValueError
         unknown quantity, impossible values
     """
-    return influence_of(resolve(model, variations, ({} if mu is None else {MU: mu},), values), rule=rule)
+    points = ({} if mu is None else {MU: mu},)
+    if band_hz is None:
+        return influence_of(resolve(model, variations, points, values), rule=rule)
+    return influence_of(resolve_in_band(model, variations, points, values, band_hz), rule=rule)
 
 
 def influence_of(resolved: Resolved, point: int = 0, *, rule: EffectRule = RULE) -> Influence:
@@ -159,7 +165,9 @@ def influence_of(resolved: Resolved, point: int = 0, *, rule: EffectRule = RULE)
     points.
     """
     nominal = resolved.nominal[point]
-    changes = (resolved.varied[:, point] - nominal).real
+    changes = np.nan_to_num(
+        (resolved.varied[:, point] - nominal).real
+    )  # modes that left a band count as still
     kept, frequencies = one_of_each_pair(nominal), resolved.frequencies_hz
     effects = tuple(classify(row[kept], frequencies[kept], nominal.real[kept], rule) for row in changes)
     return Influence(resolved, changes, effects)

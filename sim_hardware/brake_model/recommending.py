@@ -21,6 +21,7 @@ from sim_hardware.brake_model.effects import one_of_each_pair
 from sim_hardware.brake_model.linear import MU, PRESSURE, SLOPE, LinearModel, value_of
 from sim_hardware.brake_model.margins import Onsets, onsets
 from sim_hardware.brake_model.resolving import Resolved, resolve
+from sim_hardware.brake_model.resolving_band import resolve_in_band
 from sim_hardware.brake_model.variations import Variation
 
 Array = NDArray[np.float64]
@@ -100,6 +101,7 @@ def recommend(
     mus: Sequence[float] = (0.3, 0.4, 0.5, 0.6),
     pressure_max_bar: float = 60.0,
     rule: RecommendationRule = ADVICE_RULE,
+    band_hz: tuple[float, float] | None = None,
 ) -> Recommendations:
     """Measure and rank modifications.
 
@@ -109,6 +111,7 @@ def recommend(
     mus : coefficients of friction at which a modification has to help; empty for models without friction
     pressure_max_bar : the onset is searched from 0 to here, at the model's own friction, where it falls with
         speed
+    band_hz : only the eigenvalues of a frequency band, and no onset (large models)
 
     Raises
     ------
@@ -116,10 +119,13 @@ def recommend(
         unknown quantity, impossible values
     """
     points = tuple({MU: mu} for mu in mus) or ({},)
-    resolved = resolve(model, variations, points, values)
+    if band_hz is None:
+        resolved = resolve(model, variations, points, values)
+    else:
+        resolved = resolve_in_band(model, variations, points, values, band_hz)
     kept = one_of_each_pair(resolved.nominal[0])
     before = resolved.nominal[:, kept].real
-    changes = resolved.varied[:, :, kept].real - before
+    changes = np.nan_to_num(resolved.varied[:, :, kept].real - before)
     below = resolved.frequencies_hz[kept] < rule.below_hz
     gains = -changes[:, :, below].sum(axis=2).max(axis=1)
     scale = np.maximum(np.abs(before), 1e-9 * np.abs(resolved.nominal).max())
@@ -127,7 +133,7 @@ def recommend(
     harmed = rises.argmax(axis=1)
     harm = rises[np.arange(len(rises)), harmed]
     harm = np.where(harm > _ROUNDING, harm, 0.0)
-    onset = _onset(model, variations, values, pressure_max_bar)
+    onset = _onset(model, variations, values, pressure_max_bar) if band_hz is None else None
     change = np.full(len(variations), np.nan) if onset is None else onset.values[1:] - onset.values[0]
     least = rule.least_gain * float(np.abs(before[:, below]).mean()) if below.any() else 0.0
     share = np.zeros(len(variations)) if onset is None else np.nan_to_num(change / onset.values[0])

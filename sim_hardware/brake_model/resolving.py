@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from sim_hardware.brake_model.eigen_systems import ComplexArray, EigenSystem, eigen_system
 from sim_hardware.brake_model.linear import LinearModel, Matrices, value_of
 from sim_hardware.brake_model.matrix_batches import MatrixBatch, matrix_batch
-from sim_hardware.brake_model.sensitivity import ComplexArray, EigenSystem, eigen_system
 from sim_hardware.brake_model.variations import Variation
 
 #: an eigenvalue is recognised when it lies nearer to its prediction than this share of its distance to the
 #: next one
-_CLEAR = 0.3
+CLEAR = 0.3
 #: smallest step, as share of the whole change, before the identity is given up
 _SMALLEST = 2.0**-14
 
@@ -121,7 +121,7 @@ def follow(
         reached = 1.0 if done + step >= 1.0 else done + step
         ahead_matrices = model.matrices(_between(model, origin, target, reached)).dense()
         ahead = eigen_system(ahead_matrices)
-        order, clear = _match(_predict(system, _change(matrices, ahead_matrices)), ahead.values)
+        _, order, clear = matched(predicted(system, _change(matrices, ahead_matrices)), ahead.values)
         if not clear.all() and step > _SMALLEST:
             step /= 4.0
             continue
@@ -149,7 +149,7 @@ def _recognise(
     spacing = np.abs(chosen[:, :, None] - found[:, None, :])
     np.put_along_axis(spacing, choice[:, :, None], np.inf, axis=2)
     once = (np.sort(choice, axis=1) == np.arange(system.values.size)).all(axis=1)
-    clear = (error <= _CLEAR * spacing.min(axis=2)).all(axis=1) & once
+    clear = (error <= CLEAR * spacing.min(axis=2)).all(axis=1) & once
     sure = np.ones(found.shape, dtype=bool)
     for number in map(int, np.flatnonzero(~clear)):
         moved, sure[number] = follow(model, system, base, targets[number])
@@ -173,7 +173,7 @@ def _change(before: Matrices, after: Matrices) -> Matrices:
     )
 
 
-def _predict(system: EigenSystem, change: Matrices) -> ComplexArray:
+def predicted(system: EigenSystem, change: Matrices) -> ComplexArray:
     """Eigenvalues after a finite change by eq 24; nan-free: irregular ones stay where they are."""
     v, w, values = system.right, system.left, system.values
     force = values**2 * (change.mass @ v) + values * (change.damping @ v) + change.stiffness @ v
@@ -181,7 +181,7 @@ def _predict(system: EigenSystem, change: Matrices) -> ComplexArray:
 
 
 def _predict_batch(system: EigenSystem, changes: MatrixBatch) -> ComplexArray:
-    """As `_predict` for all modifications at once, (v, m)."""
+    """As `predicted` for all modifications at once, (v, m)."""
     v, values = system.right, system.values
     both = np.ascontiguousarray(
         np.hstack([v.real, v.imag])
@@ -203,15 +203,16 @@ def _moved(system: EigenSystem, change: ComplexArray) -> ComplexArray:
     return system.values - np.where(regular, change / slope, 0.0)
 
 
-def _match(predicted: ComplexArray, found: ComplexArray) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Assignment of eigenvalues to predictions of least total distance, and which of them are clear."""
-    distance = np.abs(predicted[:, None] - found[None, :])
-    _, order = linear_sum_assignment(distance)
-    chosen = found[order]
+def matched(
+    predictions: ComplexArray, found: ComplexArray
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
+    """Assignment of eigenvalues to predictions of least total distance: rows, columns, which are clear."""
+    distance = np.abs(predictions[:, None] - found[None, :])
+    rows, columns = linear_sum_assignment(distance)
+    chosen = found[columns]
     spacing = np.abs(chosen[:, None] - found[None, :])
-    spacing[np.arange(found.size), order] = np.inf
-    nearest = spacing.min(axis=1) if found.size > 1 else np.full(1, np.inf)
-    return order, np.abs(predicted - chosen) <= _CLEAR * nearest
+    spacing[np.arange(chosen.size), columns] = np.inf
+    return rows, columns, distance[rows, columns] <= CLEAR * spacing.min(axis=1, initial=np.inf)
 
 
 def _ordered(system: EigenSystem, order: NDArray[np.intp]) -> EigenSystem:

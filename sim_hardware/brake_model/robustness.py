@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sim_hardware.brake_model.linear import MU, LinearModel
 from sim_hardware.brake_model.resolving import Resolved, resolve
+from sim_hardware.brake_model.resolving_band import resolve_in_band
 from sim_hardware.brake_model.variations import Variation
 
 Array = NDArray[np.float64]
@@ -53,17 +54,17 @@ class Robustness:
     @property
     def reference(self) -> float:
         """Maximum of the basic design: the line in Figs 8 and 9."""
-        return float(self.basic.max())
+        return float(np.nanmax(self.basic))
 
     @property
     def maxima(self) -> Array:
         """(v,) maximum over all eigenvalues of each modification (Fig. 9)."""
-        return self.varied.max(axis=1)
+        return np.nanmax(self.varied, axis=1)
 
     @property
     def worst_modes(self) -> NDArray[np.intp]:
         """(v,) eigenvalue that has the maximum."""
-        return self.varied.argmax(axis=1)
+        return np.nanargmax(self.varied, axis=1)
 
     @property
     def deviations(self) -> Array:
@@ -80,7 +81,7 @@ class Robustness:
         below = self.frequencies_hz < frequency_hz
         if not below.any():
             return np.full(len(self.varied), np.nan)
-        return self.varied[:, below].max(axis=1)
+        return np.nanmax(self.varied[:, below], axis=1)
 
 
 def robustness(
@@ -91,6 +92,7 @@ def robustness(
     low: float = 0.4,
     high: float = 0.6,
     quantity: str = MU,
+    band_hz: tuple[float, float] | None = None,
 ) -> Robustness:
     """Eq 25 for a design and its modifications.
 
@@ -98,6 +100,7 @@ def robustness(
     ----------
     values : other values that differ from the file's
     low, high : ends of the change of `quantity`, the coefficient of friction unless said otherwise
+    band_hz : only the eigenvalues of a frequency band (large models)
 
     Raises
     ------
@@ -106,7 +109,11 @@ def robustness(
     """
     if not high > low:
         raise ValueError(f"{quantity} from {low:g} to {high:g}: give a second value larger than the first")
-    resolved = resolve(model, variations, ({quantity: low}, {quantity: high}), values)
+    points = ({quantity: low}, {quantity: high})
+    if band_hz is None:
+        resolved = resolve(model, variations, points, values)
+    else:
+        resolved = resolve_in_band(model, variations, points, values, band_hz)
     span = high - low
     basic = (resolved.nominal[1] - resolved.nominal[0]).real / span  # eq 25
     varied = (resolved.varied[:, 1] - resolved.varied[:, 0]).real / span  # eq 25

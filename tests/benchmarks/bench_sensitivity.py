@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from sim_hardware.brake_model.assembly import load_brake
+from sim_hardware.brake_model.eigen_systems import eigen_system
 from sim_hardware.brake_model.linear import value_of
 from sim_hardware.brake_model.matrix_batches import matrix_batch
 from sim_hardware.brake_model.parametric import LinearBrake
@@ -24,7 +25,6 @@ from sim_hardware.brake_model.resolving import resolve
 from sim_hardware.brake_model.sensitivity import (
     derivatives,
     eigen_sensitivities,
-    eigen_system,
     parameter_names,
     sensitivities,
     sensitivities_of,

@@ -20,6 +20,7 @@ from rigctl.app.model.common import (
     finish,
     parse_settings,
 )
+from rigctl.app.model.pairs import parse_band
 
 if TYPE_CHECKING:
     from rigctl.model.output import Study
@@ -33,6 +34,10 @@ GroupOption = Annotated[
     typer.Option(
         "--group", help="Group of parameters, or the beginning of several: piston. Repeatable. [all]"
     ),
+]
+BandOption = Annotated[
+    str | None,
+    typer.Option("--band", metavar="F1:F2", help="Only modes between these frequencies, Hz (large models)."),
 ]
 
 
@@ -54,6 +59,7 @@ def sensitivity(
         bool,
         typer.Option("--places", help="Each single element and coordinate too, not only file parameters."),
     ] = False,
+    band: BandOption = None,
     settings: SetOption = None,
     out: OutOption = None,
     formats: FormatOption = DEFAULT_FORMATS,
@@ -67,8 +73,10 @@ def sensitivity(
     """
     from rigctl.model.sensitivity import sensitivity_study
 
-    values = parse_settings(settings)
-    study = _run(model, lambda m: sensitivity_study(m, values, pair=pair, near_hz=near, places=places))
+    values, limits = parse_settings(settings), parse_band(band)
+    study = _run(
+        model, lambda m: sensitivity_study(m, values, pair=pair, near_hz=near, places=places, band_hz=limits)
+    )
     finish(study, out, formats, tables=("ranking", "pairs"))
 
 
@@ -79,6 +87,7 @@ def robustness(
     ] = 0.4,
     high: Annotated[float, typer.Option("--to", help="Coefficient of friction to go to.", min=0.0)] = 0.6,
     step: StepOption = 10.0,
+    band: BandOption = None,
     settings: SetOption = None,
     out: OutOption = None,
     formats: FormatOption = DEFAULT_FORMATS,
@@ -91,8 +100,10 @@ def robustness(
     """
     from rigctl.model.sensitivity import robustness_study
 
-    values = parse_settings(settings)
-    study = _run(model, lambda m: robustness_study(m, values, low=low, high=high, step=step / 100.0))
+    values, limits = parse_settings(settings), parse_band(band)
+    study = _run(
+        model, lambda m: robustness_study(m, values, low=low, high=high, step=step / 100.0, band_hz=limits)
+    )
     finish(study, out, formats, tables=("modifications",))
 
 
@@ -105,6 +116,7 @@ def influence(
     ] = None,
     mu: Annotated[float, typer.Option("--mu", help="Coefficient of friction.", min=0.0)] = 0.4,
     step: StepOption = 10.0,
+    band: BandOption = None,
     settings: SetOption = None,
     out: OutOption = None,
     formats: FormatOption = DEFAULT_FORMATS,
@@ -118,7 +130,7 @@ def influence(
     from rigctl.model.sensitivity import influence_study
     from sim_hardware.brake_model.variations import MODES, Mode
 
-    values = parse_settings(settings)
+    values, limits = parse_settings(settings), parse_band(band)
     for name in mode or ():
         if name not in MODES:
             raise ConfigError(
@@ -126,7 +138,10 @@ def influence(
             )
     modes: tuple[Mode, ...] = tuple(m for m in MODES if not mode or m in mode)
     study = _run(
-        model, lambda m: influence_study(m, group or (), values, modes=modes, mu=mu, step=step / 100.0)
+        model,
+        lambda m: influence_study(
+            m, group or (), values, modes=modes, mu=mu, step=step / 100.0, band_hz=limits
+        ),
     )
     finish(study, out, formats, tables=("effects",))
 
@@ -144,6 +159,7 @@ def recommend(
         float, typer.Option("--pressure-max", help="Search the onset up to this pressure, bar.", min=0.1)
     ] = 60.0,
     step: StepOption = 10.0,
+    band: BandOption = None,
     settings: SetOption = None,
     out: OutOption = None,
     formats: FormatOption = DEFAULT_FORMATS,
@@ -155,7 +171,7 @@ def recommend(
     from rigctl.core.errors import ConfigError
     from rigctl.model.advice import recommendation_study
 
-    values = parse_settings(settings)
+    values, limits = parse_settings(settings), parse_band(band)
     try:
         mus = tuple(float(text) for text in friction.split(","))
     except ValueError:
@@ -172,6 +188,7 @@ def recommend(
             step=step / 100.0,
             below_hz=below,
             pressure_max_bar=pressure_max,
+            band_hz=limits,
         ),
     )
     finish(study, out, formats)

@@ -147,6 +147,7 @@ def test_recommendations_in_words() -> None:
     [
         ["sensitivity", FILE, "--near", 2140, "--set", "pressure=15"],
         ["robustness", FILE, "--step", 5],
+        ["robustness", FILE, "--band", "2000:2300"],
         ["influence", FILE, "--group", "piston", "--mode", "increase"],
         ["recommend", FILE, "--group", "finger", "--friction", "0.4,0.6"],
     ],

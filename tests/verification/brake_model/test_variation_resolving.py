@@ -4,13 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.matrix_batches import matrix_batch
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, ParameterGroup, value_of
 from sim_hardware.brake_model.margins import onsets
+from sim_hardware.brake_model.matrix_batches import matrix_batch
+from sim_hardware.brake_model.matrix_model import MatrixModel
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.resolving import resolve
+from sim_hardware.brake_model.resolving_band import resolve_in_band
 from sim_hardware.brake_model.sensitivity import eigen_sensitivities
 from sim_hardware.brake_model.stability import onset_pressure
 from sim_hardware.brake_model.variations import Variation, all_variations, group_of, groups_like, variation
@@ -168,3 +171,28 @@ def test_onset_of_a_stable_and_of_an_unstable_model() -> None:
     assert found.values[1] == 2.0 and found.values[2] == pytest.approx(15.0016, abs=1e-3)
     with pytest.raises(ValueError, match="range"):
         onsets(MODEL, [{}], low=1.0, high=1.0)
+
+
+def test_modes_of_a_band_are_those_of_the_whole_model() -> None:
+    some, points = ALL[:24], ({"mu": 0.4}, {"mu": 0.6})
+    whole = resolve(MODEL, some, points)
+    band = resolve_in_band(MODEL, some, points, None, (1500.0, 3500.0))
+    chosen = (whole.frequencies_hz > 1500.0) & (whole.frequencies_hz < 3500.0)
+    assert band.varied.shape == (24, 2, 10) and band.nominal_sure.all()
+    difference = np.abs(band.varied - whole.varied[:, :, chosen])
+    assert difference[band.sure].max() < 1e-4 and band.sure.mean() > 0.95
+
+
+def test_large_sparse_model_is_varied_in_a_band() -> None:
+    """A chain of 260 masses on springs whose lower end rubs: parts as groups, band of some modes."""
+    n = 260
+    above = sparse.eye_array(n, k=1)
+    chain = (2.0 * sparse.eye_array(n) - above - above.T) * 1e8
+    rubbing = sparse.coo_array(([2e5], ([0], [1])), shape=(n, n))
+    parts = {"M": sparse.eye_array(n), "D": 1e-6 * chain, "K": chain, "K_mu": rubbing}
+    model = MatrixModel("chain", parts, {"mu": 0.4})
+    variations = all_variations(model, 0.01, groups=["k"], modes=["increase"])
+    found = resolve_in_band(model, variations, ({},), None, (150.0, 210.0))
+    assert found.sure.all() and found.nominal.size >= 4
+    dense = np.linalg.eigvals(model.matrices(variations[0].values(model)).state_matrix())
+    assert np.abs(found.varied[0, 0][:, None] - dense[None, :]).min(axis=1).max() < 1e-5
