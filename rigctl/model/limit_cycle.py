@@ -33,7 +33,7 @@ _SUFFIX = {"pressure": "_bar", "slope": "_s_m", "slip": "_m_s"}
 _VERDICTS = {
     "none": "no onset within the range",
     "supercritical": "supercritical: the amplitude grows from zero, no hysteresis of steady motions",
-    "sudden": "sudden: at the onset the amplitude jumps to the reversal of slip; nothing squeals before it",
+    "sudden": "sudden: at the onset the amplitude jumps to the reversal of slip; no hysteresis of steady motions",
     "subcritical": "subcritical: large motions squeal where small ones die away",
 }
 
@@ -174,7 +174,8 @@ def _headline(found: Branches) -> str:
         "none": f"unstable at {at}, no lasting squeal found",
         "supercritical": f"squeal grows from zero at {at}",
         "sudden": f"squeal jumps to the reversal of slip at {at}",
-        "subcritical": f"squeal sets in at {at}, lasts down to {_text(found.fold)}{unit}",
+        "subcritical": f"squeal sets in at {at}, lasts to {_text(found.fold)}{unit}"
+        + (" at least" if found.beyond else ""),
     }
     return kinds[found.verdict]
 
@@ -201,7 +202,8 @@ def _facts(found: Branches, sound: bool) -> dict[str, Any]:
         f"onset_seen_in_time{suffix}": found.onset_time,
         f"squeal_of_large_motions_ends_at{suffix}": found.fold,
         f"hysteresis_of_steady_motions{suffix}": found.hysteresis,
-        f"hysteresis_known_to{suffix}": found.resolution,
+        f"hysteresis_known_to{suffix}": None if found.beyond else found.resolution,
+        "squeal_lasts_beyond_the_range": found.beyond,
     }
     unstable = found.mode.growth_1_s > 0.0
     if found.onset_eigenvalues is not None:

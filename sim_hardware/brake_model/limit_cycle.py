@@ -12,7 +12,7 @@ caller gives weights of outputs), figures.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -25,9 +25,12 @@ from sim_hardware.brake_model.stability import PA_PER_BAR
 
 #: quantities that belong to the working point, with their units; all others are parameters of the brake file
 WORKING_QUANTITIES = {"pressure": "bar", "mu": "1", "slope": "s/m", "slip": "m/s"}
+_FIELDS = {"pressure": "pressure_bar", "mu": "mu", "slope": "slope_s_m", "slip": "slip_m_s"}
 RATE_HZ = 40_000
 #: window of one amplitude, and of the last measurement (intervals of 25 us)
 _WINDOW, _MEASURED = RATE_HZ // 20, RATE_HZ // 10
+#: time to the next value when a motion is carried on
+_STEP = RATE_HZ // 10
 #: a motion is steady when its amplitude changes more slowly than this (1/s) in so many windows in a row
 _STEADY_1_S, _CALM_WINDOWS = 0.1, 4
 #: amplitudes relative to the scale of the law: smaller is no squeal; smaller still is silence
@@ -77,6 +80,14 @@ class SquealPoints:
     def brake(self, index: int) -> Brake:
         """The brake of a point."""
         return self.brakes[index if len(self.brakes) > 1 else 0]
+
+    def at(self, values: ArrayLike) -> SquealPoints:
+        """The same with other values of a working quantity."""
+        given = np.asarray(values, dtype=float)
+        names = ("pressure_bar", "mu", "slope_s_m", "slip_m_s")
+        fields = {name: np.full(len(given), getattr(self, name)[0]) for name in names}
+        fields[_FIELDS[self.quantity]] = given
+        return replace(self, values=given, **fields)
 
     def working_point(self) -> dict[str, Any]:
         """What `BatchIntegrator.advance` takes."""
@@ -257,14 +268,14 @@ class SquealSimulation:
         Parameters
         ----------
         start : motion in the critical mode: "small", far inside the linear range; "large", as fast as the
-            disc slides; or speeds (n,) m/s
+            disc slides; or states (n, 2 n_dof)
         """
         points, batch, scale = self.points, self.batch, self.points.scale_m_s
         if isinstance(start, str):
             speed = _SMALL * scale if start == "small" else _LARGE * points.slip_m_s
+            batch.states = speed[:, None] * self.mode.states
         else:
-            speed = np.asarray(start, dtype=float)
-        batch.states = speed[:, None] * self.mode.states
+            batch.states = start
         point = points.working_point()
         history: list[Array] = []
         calm = np.zeros(len(points), dtype=int)
@@ -376,8 +387,9 @@ class Branches:
     growth_1_s : (n,) growth rates of small random motions seen in time
     onset_eigenvalues : value at which the first pair becomes unstable, interpolated; None: no change
     onset_time : the same from `growth_1_s`
-    fold : value at which the squeal of large starts ends, going away from the unstable side; None as above
-    hysteresis : how far large starts squeal into the stable side, in units of the quantity; None as above
+    fold : value at which the squeal of large motions ends, going away from the unstable side; the end of the
+        range where they squeal all over the stable side (`beyond`); None as above
+    hysteresis : how far large motions squeal into the stable side, in units of the quantity; None as above
     resolution : how exactly fold is known
     """
 
@@ -391,6 +403,7 @@ class Branches:
     fold: float | None
     hysteresis: float | None
     resolution: float | None
+    beyond: bool = False
 
     @property
     def verdict(self) -> Verdict:
@@ -402,7 +415,7 @@ class Branches:
         """
         if self.hysteresis is None or self.resolution is None:
             return "none"
-        if self.hysteresis > 2.0 * self.resolution:
+        if self.beyond or self.hysteresis > 2.0 * self.resolution:
             return "subcritical"
         return "sudden" if self._first_amplitude() > 0.5 else "supercritical"
 
@@ -435,15 +448,64 @@ def branches(
     simulation = SquealSimulation(points, radiation)
     small = simulation.limit_cycles("small", longest_s=longest_s)
     large = simulation.limit_cycles("large", longest_s=longest_s)
+    if large.squeals.any():
+        starts = _carried_on(simulation, large.squeals)
+        large = simulation.limit_cycles(starts, longest_s=longest_s)
+    states = simulation.batch.states
     rates = simulation.growth()
     eigen, seen = _crossing(points.values, simulation.mode.growth_1_s), _crossing(points.values, rates)
     fold = hysteresis = resolution = None
+    beyond = False
     if eigen is not None:
-        fold, resolution = _fold(points, large.squeals, eigen, longest_s, refinement)
+        side = _direction(points.values, simulation.mode.growth_1_s)
+        fold, resolution = _fold(points, large.squeals, states, eigen, longest_s, refinement)
+        beyond = fold is None and bool(large.squeals.all())
+        if beyond:  # the end of the range on the stable side
+            fold = float(points.values.min() if side > 0.0 else points.values.max())
+            resolution = 0.0
         if fold is not None:
-            side = _direction(points.values, simulation.mode.growth_1_s)
             hysteresis = max(0.0, side * (eigen - fold))
-    return Branches(points, simulation.mode, small, large, rates, eigen, seen, fold, hysteresis, resolution)
+    return Branches(
+        points, simulation.mode, small, large, rates, eigen, seen, fold, hysteresis, resolution, beyond
+    )  # fmt: skip
+
+
+def _carried_on(simulation: SquealSimulation, squeals: Bools) -> Array:
+    """States (n, 2 n_dof) of large motions: limit cycles, carried slowly from there into what was quiet.
+
+    A vibration that the critical mode does not lead to may still live on where it is led to from the
+    unstable side. A parameter of the brake cannot change while it runs: there the nearest limit cycle starts.
+    """
+    points, states = simulation.points, simulation.batch.states
+    n = len(points)
+    paths = []
+    for i in np.flatnonzero(squeals):
+        for way in (-1, 1):
+            path = [int(i)]
+            while 0 <= path[-1] + way < n and not squeals[path[-1] + way]:
+                path.append(path[-1] + way)
+            if len(path) > 1:
+                paths.append(path)
+    if not paths:
+        return states
+    if points.quantity not in WORKING_QUANTITIES:
+        for path in paths:
+            states[path[1:]] = states[path[0]]
+        return states
+    starts = [path[0] for path in paths]
+    walk = SquealSimulation(points.at([points.values[i] for i in starts])).batch
+    walk.states = states[starts]
+    size = np.zeros(n)
+    for step in range(max(map(len, paths)) - 1):
+        ends = [[path[min(step + d, len(path) - 1)] for path in paths] for d in (0, 1)]
+        a, b = (points.at(points.values[which]).working_point() for which in ends)
+        point = {key: a[key] if key == "saturation_m_s" else (a[key], b[key]) for key in a}
+        walk.observe(_STEP, **point, columns=0)
+        for lane, state in enumerate(walk.states):
+            i = ends[1][lane]
+            if step + 1 < len(paths[lane]) and np.linalg.norm(state) > size[i]:
+                size[i], states[i] = np.linalg.norm(state), state
+    return states
 
 
 def _crossing(values: Array, growth: Array) -> float | None:
@@ -462,7 +524,7 @@ def _direction(values: Array, growth: Array) -> float:
 
 
 def _fold(
-    points: SquealPoints, squeals: Bools, onset: float, longest_s: float, refinement: int
+    points: SquealPoints, squeals: Bools, states: Array, onset: float, longest_s: float, refinement: int
 ) -> tuple[float | None, float | None]:
     """Where large starts cease to squeal, next to the onset, and how exactly."""
     changes = np.flatnonzero(squeals[:-1] != squeals[1:])
@@ -473,17 +535,8 @@ def _fold(
     if points.quantity not in WORKING_QUANTITIES:
         return float(ends.mean()), float(np.ptp(ends))
     fine = np.linspace(ends[0], ends[1], refinement + 1)
-    field = {"pressure": "pressure_bar", "mu": "mu", "slope": "slope_s_m", "slip": "slip_m_s"}[
-        points.quantity
-    ]
-    same = {
-        name: np.full(len(fine), getattr(points, name)[i])
-        for name in ("pressure_bar", "mu", "slope_s_m", "slip_m_s")
-    } | {field: fine}
-    finer = SquealPoints(
-        points.quantity, points.unit, fine, points.brakes, **same, saturation_m_s=points.saturation_m_s
-    )
-    found = SquealSimulation(finer).limit_cycles("large", longest_s=longest_s)
+    start = np.tile(states[i] if squeals[i] else states[i + 1], (len(fine), 1))
+    found = SquealSimulation(points.at(fine)).limit_cycles(start, longest_s=longest_s)
     at = np.flatnonzero(found.squeals[:-1] != found.squeals[1:])
     if not len(at):
         return float(ends.mean()), float(np.ptp(ends))

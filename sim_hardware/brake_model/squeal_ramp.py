@@ -39,7 +39,7 @@ class Ramp:
     up, down : (windows,) value of the quantity in the middle of each window, in the order of time
     slip_up_m_s, slip_down_m_s : (windows,) amplitude of the slip, sqrt(2) rms
     radiated_up, radiated_down : (windows,) rms of the sound
-    onset, end : values at which squeal sets in and ends; None: no squeal
+    onset, end : values at which squeal sets in and ends; None: no squeal, or from the first, to the last
     """
 
     duration_s: float
@@ -142,7 +142,8 @@ def _ramp(duration: float, seed: int, windows: int, history: Array) -> Ramp:
     threshold = _THRESHOLD * max(slip_up.max(), slip_down.max())
     loud_up, loud_down = np.flatnonzero(slip_up > threshold), np.flatnonzero(slip_down > threshold)
     # noise alone is not squeal: it must stand out of its smallest amplitude
-    squealed = max(slip_up.max(), slip_down.max()) > 20.0 * max(slip_up.min(), slip_down.min())
-    onset = float(up[loud_up[0]]) if squealed and len(loud_up) else None
-    end = float(down[loud_down[-1]]) if squealed and len(loud_down) else None
+    squealed = max(slip_up.max(), slip_down.max()) > 20.0 * min(slip_up.min(), slip_down.min())
+    onset = float(up[loud_up[0]]) if squealed and len(loud_up) and loud_up[0] > 0 else None
+    lasting = len(loud_down) > 0 and loud_down[-1] == windows - 1
+    end = float(down[loud_down[-1]]) if squealed and len(loud_down) and not lasting else None
     return Ramp(duration, seed, up, down, slip_up, slip_down, sound_up, sound_down, onset, end)

@@ -9,6 +9,7 @@ import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.friction import SaturatingFriction
+from sim_hardware.brake_model.integrator import SquealIntegrator
 from sim_hardware.brake_model.limit_cycle import (
     SquealSimulation,
     branches,
@@ -132,3 +133,31 @@ def test_extremes() -> None:
         squeal_points(PLANT, "pressure", [10.0, 20.0], mu=0.0, slope_s_m=0.0, **SLIDING), longest_s=0.5
     )
     assert smooth.verdict == "none" and not smooth.large.squeals.any()
+
+
+def test_flutter_of_the_basic_brake_is_subcritical() -> None:
+    """Squeal by mode coupling, once begun, lasts far below its onset: a single braking confirms it."""
+    basic = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "basic.toml")
+    fixed: dict[str, Any] = {"slope_s_m": 0.0, "pressure_bar": 10.0, **LINEAR}
+    found = branches(
+        squeal_points(basic, "mu", np.linspace(0.35, 0.7, 8), **fixed), longest_s=1.0, refinement=4
+    )
+    assert found.verdict == "subcritical" and not found.beyond
+    assert found.onset_eigenvalues == pytest.approx(0.64, abs=0.01)
+    assert found.fold is not None and found.fold < 0.45
+    np.testing.assert_array_equal(found.small.squeals, found.mode.growth_1_s > 0.0)
+    narrow = branches(squeal_points(basic, "mu", [0.5, 0.55, 0.6, 0.7], **fixed), longest_s=1.0)
+    assert narrow.beyond and narrow.fold == 0.5
+
+    def amplitude(mu: float, state: np.ndarray) -> float:
+        single = SquealIntegrator(basic, outputs=["inner_pad:slip"])
+        single.state = state
+        point: dict[str, Any] = {"normal_force_n": basic.pad_force_n(10e5), "mu": mu, "slip_m_s": 0.44}
+        y = single.advance(12_000, **{name: (value, value) for name, value in point.items()})
+        return float(np.ptp(y[-2000:]) / 2.0)
+
+    simulation = SquealSimulation(squeal_points(basic, "mu", [0.65], **fixed))
+    loud = simulation.limit_cycles("large", longest_s=1.0)
+    state = simulation.batch.states[0]
+    assert amplitude(0.6, state) > 0.5 * loud.slip_amplitude_m_s[0]
+    assert amplitude(0.6, 1e-3 * state) < 1e-6
