@@ -23,6 +23,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sim_hardware.brake_model import event_cases as cases
+from sim_hardware.brake_model import event_forces as model
 from sim_hardware.brake_model import event_steps as steps
 from sim_hardware.brake_model.assembly import Array, Brake
 from sim_hardware.brake_model.laws import spring_force
@@ -229,11 +231,11 @@ def integrate(
         most_steps=most_steps,
     )  # fmt: skip
     n, n_contacts = brake.n_dof, len(brake.contacts)
-    memory = steps.Memory(
+    memory = model.Memory(
         start.copy(), np.array([times[0], 0.0]), np.ones(len(groups), dtype=np.int64),
-        np.ones(n_contacts, dtype=np.int64), np.zeros(7, dtype=np.int64),
+        np.ones(n_contacts, dtype=np.int64), np.zeros(6, dtype=np.int64),
     )  # fmt: skip
-    record = steps.Record(
+    record = model.Record(
         times, np.empty((len(times), 2 * n)), np.empty((len(times), len(groups))),
         np.empty((len(times), n_contacts)), np.empty((len(times), len(groups)), dtype=np.int64),
         np.empty(_EVENTS), np.empty((_EVENTS, 2), dtype=np.int64),
@@ -244,7 +246,7 @@ def integrate(
     speed = course.at(times)[:, 2:3] - record.states[:, n:] @ slip_rows.T
     motion = Motion(
         brake, course, always_sliding, times, record.states, names, record.friction, record.normal,
-        record.sliding, speed, events, int(memory.counts[steps.STEPS]), int(memory.counts[steps.REJECTED]),
+        record.sliding, speed, events, int(memory.counts[model.STEPS]), int(memory.counts[model.REJECTED]),
     )  # fmt: skip
     if record_forces:
         object.__setattr__(motion, "coupling_forces", _coupling_forces(motion, groups))
@@ -294,7 +296,7 @@ def _tables(
     always_sliding: bool,
     longest_step_s: float,
     most_steps: int,
-) -> steps.Tables:
+) -> model.Tables:
     n = brake.n_dof
     stiffness, damping = np.zeros((n, n)), np.zeros((n, n))
     cubic: list[tuple[Array, float]] = []
@@ -314,7 +316,7 @@ def _tables(
     slip_rows = np.array([group.slip_row for group in groups])
     inverse = 1.0 / brake.inertia
     owner = {contact.name: g for g, group in enumerate(groups) for contact in group.contacts}
-    return steps.Tables(
+    return model.Tables(
         linear=np.ascontiguousarray(-(inverse[:, None] * np.hstack([stiffness, damping])).T),
         inverse_inertia=inverse,
         cubic_rows=np.array([row for row, _ in cubic]).reshape(-1, n),
@@ -340,27 +342,27 @@ def _tables(
 
 
 def _run(
-    brake: Brake, tables: steps.Tables, memory: steps.Memory, record: steps.Record, groups: tuple[str, ...]
+    brake: Brake, tables: model.Tables, memory: model.Memory, record: model.Record, groups: tuple[str, ...]
 ) -> tuple[Event, ...]:
     """All steps, in portions so that they can be interrupted; returns the events."""
     contacts = [contact.name for contact in brake.contacts]
-    work = steps.scratch(brake.n_dof, len(groups), len(contacts))
+    work = model.scratch(brake.n_dof, len(groups), len(contacts))
     events: list[Event] = []
     while True:
         status = steps.advance(tables, memory, record, work, _PAUSE)
-        for i in range(int(memory.counts[steps.EVENTS])):
+        for i in range(int(memory.counts[model.EVENTS])):
             kind, which = (int(v) for v in record.event_what[i])
-            where = groups[which] if kind < steps.OPEN else contacts[which]
+            where = groups[which] if kind < cases.OPEN else contacts[which]
             events.append(Event(float(record.event_time[i]), where, _KINDS[kind]))
-        memory.counts[steps.EVENTS] = 0
+        memory.counts[model.EVENTS] = 0
         if status not in (steps.DONE, steps.BUFFER_FULL):
             raise _failure(brake, status, memory, tables, events)
-        if memory.counts[steps.WRITTEN] == len(record.times):
+        if memory.counts[model.WRITTEN] == len(record.times):
             return tuple(events)
 
 
 def _failure(
-    brake: Brake, status: int, memory: steps.Memory, tables: steps.Tables, events: list[Event]
+    brake: Brake, status: int, memory: model.Memory, tables: model.Tables, events: list[Event]
 ) -> ArithmeticError:
     what = {
         steps.NOT_FINITE: "is not finite: check the stability of the brake at this working point",
@@ -379,7 +381,7 @@ def _failure(
     return ArithmeticError(f"the motion of brake '{brake.name}' at {memory.clock[0]:.9g} s {what}{before}")
 
 
-def _mu_at(memory: steps.Memory, tables: steps.Tables) -> float:
+def _mu_at(memory: model.Memory, tables: model.Tables) -> float:
     """Least coefficient of friction at the present slip speeds."""
     n = len(tables.inverse_inertia)
     _, mu, mean, slope = (float(np.interp(memory.clock[0], tables.knots, c)) for c in tables.course.T)
