@@ -33,7 +33,7 @@ _SUFFIX = {"pressure": "_bar", "slope": "_s_m", "slip": "_m_s"}
 _VERDICTS = {
     "none": "no onset within the range",
     "supercritical": "supercritical: the amplitude grows from zero, no hysteresis of steady motions",
-    "sudden": "sudden: at the onset the amplitude jumps to the reversal of slip; no hysteresis of steady motions",
+    "sudden": "sudden: at the onset the amplitude jumps to the reversal of slip, no hysteresis",
     "subcritical": "subcritical: large motions squeal where small ones die away",
 }
 

@@ -152,8 +152,8 @@ def test_flutter_of_the_basic_brake_is_subcritical() -> None:
     def amplitude(mu: float, state: np.ndarray) -> float:
         single = SquealIntegrator(basic, outputs=["inner_pad:slip"])
         single.state = state
-        point: dict[str, Any] = {"normal_force_n": basic.pad_force_n(10e5), "mu": mu, "slip_m_s": 0.44}
-        y = single.advance(12_000, **{name: (value, value) for name, value in point.items()})
+        force = basic.pad_force_n(10e5)
+        y = single.advance(12_000, normal_force_n=(force, force), mu=(mu, mu), slip_m_s=(0.44, 0.44))
         return float(np.ptp(y[-2000:]) / 2.0)
 
     simulation = SquealSimulation(squeal_points(basic, "mu", [0.65], **fixed))
