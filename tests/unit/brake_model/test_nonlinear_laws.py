@@ -28,6 +28,9 @@ from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.reference import ReferenceModel, WorkingPoint
 from sim_hardware.brake_model.spec import BrakeSpec
 
+#: the first run compiles the integrator
+pytestmark = pytest.mark.timeout(600)
+
 FILE = Path(__file__).parents[3] / "configs" / "brakes" / "model.toml"
 MODEL = load_brake(FILE)
 POINT = WorkingPoint(3435.0, 0.44, ConstantFriction(mu_mean=0.4))

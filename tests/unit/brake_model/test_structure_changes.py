@@ -22,6 +22,9 @@ from sim_hardware.brake_model.rigid_body import eigenvalues, rigid_motions
 from sim_hardware.brake_model.spec import BrakeSpec
 from sim_hardware.brake_model.stability import eigen_pairs, onset_mu, predict
 
+#: the first run compiles the integrator
+pytestmark = pytest.mark.timeout(600)
+
 FILE = Path(__file__).parents[3] / "configs" / "brakes" / "model.toml"
 MODEL = load_brake(FILE)
 Data = dict[str, Any]

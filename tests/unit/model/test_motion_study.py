@@ -17,6 +17,9 @@ from rigctl.model.output import write
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.energy import decays
 
+#: the first run compiles the integrator
+pytestmark = pytest.mark.timeout(600)
+
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 PLANT, MODEL = load_brake(BRAKES / "plant.toml"), load_brake(BRAKES / "model.toml")
 

@@ -21,6 +21,9 @@ from sim_hardware.brake_model.motion import WorkingCourse, integrate
 from sim_hardware.brake_model.reference import WorkingPoint
 from sim_hardware.brake_model.spec import BrakeSpec
 
+#: the first run compiles the integrator
+pytestmark = pytest.mark.timeout(600)
+
 PLANT = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "plant.toml")
 N = PLANT.n_dof
 RATE = 40_000.0

@@ -12,6 +12,9 @@ from sim_hardware.brake_model.motion import integrate
 from sim_hardware.brake_model.reference import WorkingPoint
 from sim_hardware.brake_model.stability import eigen_pairs
 
+#: the first run compiles the integrator
+pytestmark = pytest.mark.timeout(600)
+
 MODEL = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "model.toml")
 
 
