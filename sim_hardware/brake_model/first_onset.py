@@ -27,6 +27,8 @@ _TOLERANCE = 1e-12
 #: shares of the range where it is checked that the state matrix is linear in the quantity
 _CHECKED = (0.31, 0.77)
 _ROUNDING = 1e-13
+#: largest model that is solved thousands of times with all its eigenvalues (a second each)
+MOST_FREEDOMS = 400
 #: values solved at once where the scan may end early
 _BLOCK = 6
 
@@ -83,6 +85,7 @@ def scan(
     if grid.ndim != 1 or grid.size == 0 or not np.isfinite(grid).all() or (np.diff(grid) <= 0.0).any():
         raise ValueError(f"{quantity}: give rising values, at least one")
     known(model, quantity)
+    check_dense(model)
     system = _along(model, quantity, float(grid[0]), float(grid[-1]), values or {})
     growth = np.full(grid.size, np.nan)
     for start in range(0, grid.size, grid.size if whole else _BLOCK):
@@ -108,6 +111,22 @@ def scan(
     critical = np.linalg.eigvals(system(onset))
     frequency = float(abs(critical[int(np.argmax(critical.real))].imag)) / (2.0 * np.pi)
     return Scan(quantity, grid, growth, onset, frequency)
+
+
+def check_dense(model: LinearModel) -> None:
+    """Refuse models whose eigenvalues, all of them many times over, would take days.
+
+    Raises
+    ------
+    ValueError
+        more than `MOST_FREEDOMS`
+    """
+    count = len(model.freedoms)
+    if count > MOST_FREEDOMS:
+        raise ValueError(
+            f"the model has {count} degrees of freedom: this study solves for all eigenvalues thousands of "
+            f"times and takes models up to {MOST_FREEDOMS}; reduce it first (modal or Craig-Bampton reduction)"
+        )
 
 
 def onset_gradient(

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from sim_hardware.brake_model.eigen_systems import EigenSystem, eigen_system
+from sim_hardware.brake_model.first_onset import check_dense
 from sim_hardware.brake_model.linear import LinearModel, value_of
 from sim_hardware.brake_model.scatter import Variable
 from sim_hardware.brake_model.sensitivity import sensitivities_of
@@ -97,6 +98,7 @@ def check_bounds(
     KeyError
         unknown quantity
     """
+    check_dense(model)
     if not bounds:
         raise ValueError("nothing is free: name quantities or groups that may change")
     if not points:

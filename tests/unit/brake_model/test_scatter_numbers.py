@@ -191,3 +191,9 @@ def test_chance_rarely_exceeds_the_threshold_of_drivers():
         found = drivers(random.random((50, 20)), random.random(50))
         exceeded += bool((np.abs(found.correlation) > found.threshold).any())
     assert exceeded / 200 < 0.1
+
+
+def test_models_too_large_for_all_eigenvalues_are_refused(monkeypatch):
+    monkeypatch.setattr("sim_hardware.brake_model.first_onset.MOST_FREEDOMS", 13)
+    with pytest.raises(ValueError, match=r"has 14 degrees of freedom.*up to 13; reduce it"):
+        scan(MODEL, "pressure", PRESSURES)
