@@ -31,6 +31,7 @@ from rigctl.analysis.style import (
     label_axes,
     new_figure,
 )
+from rigctl.model.beside_paper import Comparison, paper_table
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.assembly import Brake
 from sim_hardware.brake_model.energy import INITIAL_NM, Decay, decays
@@ -169,35 +170,32 @@ def _signs(found: Sequence[Decay], column: int, sign: float) -> list[int]:
 def _claims(found: Sequence[Decay], strengths: tuple[float, ...]) -> Table:
     """The claims of section 4.4.2 beside ours."""
     by_mode = {d.start.index: d for d in found}
-    names, paper, ours, holds = [], [], [], []
+    rows: list[Comparison] = []
     for index, says in _PAPER.items():
         if index in by_mode:
             words = [f"×{s:g}: {_effect(float(by_mode[index].changes[i]))}" for i, s in enumerate(strengths)]
             agreeing = [_effect(float(c)).startswith(says) for c in by_mode[index].changes]
-            names.append(f"hardening from the mode of i = {2 * index - 1}, {2 * index}")
-            paper.append(says)
-            ours.append("; ".join(words))
-            holds.append("yes" if all(agreeing) else "in part" if any(agreeing) else "no")
-    names.append("realistic hardening is not important for stability")
-    paper.append("yes")
-    ours.append(f"{_below(found, 0)} of {len(found)} rates change by less than 2 % at ×{strengths[0]:g}")
-    most = 2 * _below(found, 0) > len(found)
-    holds.append("yes" if most else "no")
-    needed = first_clear(found, strengths)
-    names.append("a clear difference needs unrealistically strong hardening")
-    paper.append("yes")
-    ours.append("not reached" if needed is None else f"a third of the modes by 5 % at ×{needed:g}")
-    holds.append("yes" if needed is None or needed >= 10.0 else "no")
-    return Table(
-        "paper",
-        "Claims of section 4.4.2 and what this brake does",
-        (
-            Column("claim", "", names),
-            Column("paper", "", paper),
-            Column("ours", "", ours),
-            Column("holds", "", holds),
-        ),
+            holds = True if all(agreeing) else "in part" if any(agreeing) else False
+            what = f"hardening from the mode of i = {2 * index - 1}, {2 * index}"
+            rows.append(Comparison(what, says, "; ".join(words), holds=holds))
+    rows.append(
+        Comparison(
+            "realistic hardening is not important for stability",
+            "yes",
+            f"{_below(found, 0)} of {len(found)} rates change by less than 2 % at ×{strengths[0]:g}",
+            holds=2 * _below(found, 0) > len(found),
+        )
     )
+    needed = first_clear(found, strengths)
+    rows.append(
+        Comparison(
+            "a clear difference needs unrealistically strong hardening",
+            "yes",
+            "not reached" if needed is None else f"a third of the modes by 5 % at ×{needed:g}",
+            holds=needed is None or needed >= 10.0,
+        )
+    )
+    return paper_table("Claims of section 4.4.2 and what this brake does", rows)
 
 
 def _effect(change: float) -> str:

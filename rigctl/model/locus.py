@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigctl.model.beside_paper import Comparison, paper_table
 from rigctl.model.locus_figures import Section, course_figure, parameter_label, plane_figure, value_text
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.linear import LinearModel, ParameterGroup
@@ -122,20 +123,9 @@ def figure_13_study(model: LinearModel, steps: int = 25, slope_s_m: float = FIGU
 
 
 def _beside_paper(study: Study, figure: str, rows: list[tuple[str, str, Any, Any]]) -> Study:
-    deviation = [
-        100.0 * (ours - paper) / paper if isinstance(ours, float) and isinstance(paper, float) else None
-        for _, _, paper, ours in rows
-    ]
-    table = Table(
-        "paper",
+    table = paper_table(
         f"The paper's numbers, {figure}, and ours",
-        (
-            Column("quantity", "", [row[0] for row in rows]),
-            Column("unit", "", [row[1] for row in rows]),
-            Column("paper", "", [row[2] for row in rows]),
-            Column("ours", "", [row[3] for row in rows]),
-            Column("deviation", "%", deviation),
-        ),
+        [Comparison(name, paper, ours, unit) for name, unit, paper, ours in rows],
     )
     beside = {
         name.replace(" ", "_"): {"unit": unit, "paper": paper, "ours": ours}

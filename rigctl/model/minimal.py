@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigctl.model import figures_minimal as figures
+from rigctl.model.beside_paper import Statement, statement_table
 from rigctl.model.minimal_belt import BELT, COULOMB, EXPONENTIAL, FALLING, belt_study, figure_1a_study
-from rigctl.model.minimal_statements import Statement, paper_table
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.minimal.cases import BeltCase, TwoDofCase, check_case
 from sim_hardware.brake_model.minimal.hurwitz import (
@@ -113,7 +113,7 @@ def sprag_study(
         facts=facts,
         tables=(
             table,
-            paper_table(_sprag_statements(model), "1.2"),
+            statement_table(_sprag_statements(model), "1.2"),
             Table(
                 "needed",
                 "Disc damper needed for instability at the best angle",
@@ -221,7 +221,7 @@ def two_dof_study(
         facts=facts,
         tables=(
             _boundaries_table(boundaries),
-            paper_table(_two_dof_statements(model, facts, first), "1.3"),
+            statement_table(_two_dof_statements(model, facts, first), "1.3"),
             _locus_table(mus, upper),
         ),
         figures={"root_locus": partial(figures.two_dof_locus, mus, upper, first)},

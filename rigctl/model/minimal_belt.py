@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigctl.model import figures_minimal as figures
-from rigctl.model.minimal_statements import Statement, paper_table
+from rigctl.model.beside_paper import Statement, statement_table
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.minimal.belt import BeltOscillator
 from sim_hardware.brake_model.minimal.cycles import (
@@ -97,7 +97,7 @@ def belt_study(
         tables=(
             _cycles_table(plane),
             _regions_table(plane),
-            paper_table(_belt_statements(belt, plane, laws, curves), "1.1"),
+            statement_table(_belt_statements(belt, plane, laws, curves), "1.1"),
             _frequency_table(curves),
             Table(
                 "turns",

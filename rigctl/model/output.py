@@ -163,7 +163,7 @@ def _write_parquet(table: Table, path: Path) -> Path:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    arrays = [pa.array([plain(v) for v in column.values]) for column in table.columns]
+    arrays = [pa.array(_of_one_kind([plain(v) for v in column.values])) for column in table.columns]
     fields = [
         pa.field(column.name, array.type, metadata={"unit": column.unit})
         for column, array in zip(table.columns, arrays, strict=True)
@@ -172,6 +172,14 @@ def _write_parquet(table: Table, path: Path) -> Path:
         pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={"title": table.title})), path
     )
     return path
+
+
+def _of_one_kind(values: list[Any]) -> list[Any]:
+    """Numbers and texts in one column as texts: Parquet columns have one type."""
+    kinds = {type(value) for value in values if value is not None}
+    if len(kinds) > 1 and not kinds <= {int, float}:
+        return [None if value is None else str(value) for value in values]
+    return values
 
 
 def plain(value: Any) -> Any:

@@ -17,6 +17,7 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from rigctl import __version__
+from rigctl.model.beside_paper import NAME
 from rigctl.model.loading import read_brake, read_model
 from rigctl.model.output import Column, Study, Table, plain, write
 
@@ -82,19 +83,19 @@ FIGURES = (
     PaperFigure(
         "Fig. 8",
         "Sensitivity of basic brake design referring to COF variation",
-        "sensitivity:figure_8_study",
+        "sensitivity_paper:figure_8_study",
         "model.toml",
     ),
     PaperFigure(
         "Fig. 9",
         "Robustness for symmetric and asymmetric variation of the position of coupling elements",
-        "sensitivity:figure_9_study",
+        "sensitivity_paper:figure_9_study",
         "model.toml",
     ),
     PaperFigure(
         "Fig. 10",
         "Change of eigenvalue real parts due to variations of parameter group 'piston'",
-        "sensitivity:figure_10_study",
+        "sensitivity_paper:figure_10_study",
         "model.toml",
     ),
     PaperFigure(
@@ -164,16 +165,19 @@ def write_page(made: Sequence[tuple[PaperFigure, Study]], brakes: Path, out: Pat
 
 
 def numbers_table(made: Sequence[tuple[PaperFigure, Study]]) -> Table:
-    """All "paper" tables of the studies in one: figure, quantity, unit, paper, ours, deviation."""
+    """All "paper" tables of the studies in one, with the figure's number before each line."""
     rows: list[tuple[Any, ...]] = []
     for figure, study in made:
         for table in study.tables:
-            if table.name == "paper":
-                names = ("quantity", "unit", "paper", "ours", "deviation")
+            if table.name == NAME:
+                names = ("quantity", "unit", "paper", "ours", "deviation", "holds")
                 rows += [
                     (figure.number, *row) for row in zip(*map(partial(_column, table), names), strict=True)
                 ]
-    heads = (("figure", ""), ("quantity", ""), ("unit", ""), ("paper", ""), ("ours", ""), ("deviation", "%"))
+    heads = (
+        ("figure", ""), ("quantity", ""), ("unit", ""), ("paper", ""), ("ours", ""), ("deviation", "%"),
+        ("holds", ""),
+    )  # fmt: skip
     columns = tuple(Column(name, unit, [row[i] for row in rows]) for i, (name, unit) in enumerate(heads))
     return Table("numbers", "The paper's numbers and ours", columns)
 
