@@ -125,7 +125,7 @@ def check_dense(model: LinearModel) -> None:
     if count > MOST_FREEDOMS:
         raise ValueError(
             f"the model has {count} degrees of freedom: this study solves for all eigenvalues thousands of "
-            f"times and takes models up to {MOST_FREEDOMS}; reduce it first (modal or Craig-Bampton reduction)"
+            f"times and takes models up to {MOST_FREEDOMS}; reduce it first (Craig and Bampton)"
         )
 
 
