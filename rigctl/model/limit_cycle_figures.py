@@ -78,7 +78,7 @@ def ramp_figure(found: Branches, runs: Sequence[Ramp], heading: str) -> Figure:
     _stability(course, found, label=False)
     axes_title(course, "Slip amplitude; one excitation of each duration")
     label_axes(course, _x_label(found), "m/s", y_gap_pt=32.0)
-    course.legend(loc="lower right", ncols=2)
+    course.legend(loc="best", ncols=2)
     grid(course)
     known = [run for run in runs if run.width is not None]
     width.plot(
@@ -89,11 +89,14 @@ def ramp_figure(found: Branches, runs: Sequence[Ramp], heading: str) -> Figure:
     width.set_xscale("log")
     width.set_xticks(durations, [f"{d:g}" for d in durations], minor=False)
     width.set_xticks([], minor=True)
-    width.set_ylim(bottom=min(0.0, *(run.width or 0.0 for run in known)) if known else 0.0)
+    widths = [0.0, found.hysteresis or 0.0, *(run.width for run in known if run.width is not None)]
+    reach = (max(widths) - min(widths)) or 1.0
+    width.set_ylim(min(widths) - 0.05 * reach, max(widths) + 0.1 * reach)
+    width.set_xlim(0.85 * min(durations), 1.18 * max(durations))
     unit = found.points.unit
     axes_title(width, "Onset (up) minus end (down)")
     label_axes(width, "duration of one direction [s]", unit if unit != "1" else "")
-    width.legend(loc="upper right")
+    width.legend(loc="lower left")
     grid(width)
     return figure
 

@@ -37,7 +37,7 @@ class Ramp:
     duration_s : of each direction
     seed : of its excitation
     up, down : (windows,) value of the quantity in the middle of each window, in the order of time
-    slip_up_m_s, slip_down_m_s : (windows,) amplitude of the slip, sqrt(2) rms
+    slip_up_m_s, slip_down_m_s : (windows,) amplitude of the slip, half of peak to peak
     radiated_up, radiated_down : (windows,) rms of the sound
     onset, end : values at which squeal sets in and ends; None: no squeal, or from the first, to the last
     """
@@ -118,7 +118,7 @@ def ramps(
             excitation_n=push * (roughness_n_per_sqrt_n * force)[:, None],
         )
         values.append(0.5 * (ends[0] + ends[1]))
-        slips.append(np.sqrt(2.0) * seen.rms[:, :pads].max(axis=1))
+        slips.append(0.5 * (seen.maximum - seen.minimum)[:, :pads].max(axis=1))
         sounds.append(seen.rms[:, -1])
     history = np.array([values, slips, sounds])
     return [_ramp(*lanes[i], int(windows[i]), history[:, :, i]) for i in range(len(lanes))]
