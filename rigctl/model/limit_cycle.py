@@ -22,7 +22,8 @@ from rigctl.core.units import RAD_S_PER_RPM, REFERENCE_PRESSURE_PA
 from rigctl.model.limit_cycle_figures import bifurcation_figure, ramp_figure
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.assembly import Brake
-from sim_hardware.brake_model.limit_cycle import Branches, branches, squeal_points
+from sim_hardware.brake_model.limit_cycle import Branches, branches
+from sim_hardware.brake_model.squeal_points import squeal_points
 from sim_hardware.brake_model.squeal_ramp import Ramp, ramps
 
 #: speed of the paper's measurements (section 4.1), and v_s where no plant file says it

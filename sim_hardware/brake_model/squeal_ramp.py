@@ -15,13 +15,8 @@ from typing import Any
 import numpy as np
 
 from sim_hardware.brake_model.assembly import Array, Brake
-from sim_hardware.brake_model.limit_cycle import (
-    RATE_HZ,
-    WORKING_QUANTITIES,
-    SquealPoints,
-    SquealSimulation,
-    squeal_points,
-)
+from sim_hardware.brake_model.limit_cycle import RATE_HZ, SquealSimulation
+from sim_hardware.brake_model.squeal_points import WORKING_QUANTITIES, SquealPoints, squeal_points
 
 _WINDOW = RATE_HZ // 50
 #: amplitude, relative to the largest of the ramp, above which it squeals
@@ -79,10 +74,10 @@ def ramps(
 
     Parameters
     ----------
-    quantity : one of `limit_cycle.WORKING_QUANTITIES`
+    quantity : one of `squeal_points.WORKING_QUANTITIES`
     durations_s : of one direction
     roughness_n_per_sqrt_n : rms of the white excitation, N per sqrt(N) of pad force
-    others : as `limit_cycle.squeal_points`
+    others : as `squeal_points.squeal_points`
 
     Raises
     ------

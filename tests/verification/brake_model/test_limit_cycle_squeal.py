@@ -10,13 +10,9 @@ import pytest
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.friction import SaturatingFriction
 from sim_hardware.brake_model.integrator import SquealIntegrator
-from sim_hardware.brake_model.limit_cycle import (
-    SquealSimulation,
-    branches,
-    critical_mode,
-    squeal_points,
-)
+from sim_hardware.brake_model.limit_cycle import SquealSimulation, branches
 from sim_hardware.brake_model.reference import WorkingPoint, motion
+from sim_hardware.brake_model.squeal_points import critical_mode, squeal_points
 from sim_hardware.brake_model.squeal_ramp import ramps
 from sim_hardware.brake_model.stability import onset_pressure
 
