@@ -13,6 +13,8 @@ import pytest
 
 from rigctl.core.journal import Record, read_journal
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy comes later; pytest itself uses all processors
+
 ROOT = Path(__file__).resolve().parents[1]
 
 PROGRAM = """

@@ -5,6 +5,7 @@ Job: options, help that teaches, exit codes, errors without tracebacks. Not its 
 
 from __future__ import annotations
 
+import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -16,6 +17,9 @@ from rich.console import Console
 from rigctl import __version__
 from rigctl.app import exit_codes
 from rigctl.core.errors import RigctlError
+
+# Before numpy loads: matrices of brakes are small, threads of the linear algebra only wait for each other.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 DEFAULT_RIG = Path("configs/rigs/simulated.toml")
 

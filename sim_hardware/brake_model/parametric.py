@@ -58,9 +58,18 @@ class LinearBrake:
         """Names of the degrees of freedom."""
         return self.brake.freedoms
 
-    @cached_property
+    @property
     def quantities(self) -> Mapping[str, NamedQuantity]:
         """Operating values, parameters and places by name."""
+        return self._quantities
+
+    @property
+    def groups(self) -> tuple[ParameterGroup, ...]:
+        """Parameter groups of the brake file."""
+        return self._groups
+
+    @cached_property
+    def _quantities(self) -> Mapping[str, NamedQuantity]:
         brake, structure = self.brake, self._structure
         found = [
             NamedQuantity(MU, brake.mu, "1", "operating"),
@@ -80,8 +89,7 @@ class LinearBrake:
         return MappingProxyType({quantity.name: quantity for quantity in found})
 
     @cached_property
-    def groups(self) -> tuple[ParameterGroup, ...]:
-        """Parameter groups of the brake file."""
+    def _groups(self) -> tuple[ParameterGroup, ...]:
         return tuple(
             ParameterGroup(
                 g.name,

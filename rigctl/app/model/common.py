@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table as RichTable
 
 from rigctl.core.errors import ConfigError
@@ -89,7 +90,7 @@ def finish(
     get everything.
     """
     screen = console()
-    screen.print(f"[bold]{study.title}[/bold]")
+    screen.print(f"[bold]{escape(study.title)}[/bold]")
     for key, value in study.facts.items():
         if not isinstance(value, dict | list | tuple):
             screen.print(f"  {key.replace('_', ' ')}: {cell(value)}")
@@ -107,16 +108,20 @@ def rich_table(table: Table, lines: int | None = _LINES) -> RichTable:
     """A table for the console; its first lines where it is long."""
     from rigctl.model.output import plain
 
-    shown = RichTable(title=table.title, title_justify="left", title_style="bold", header_style="", box=None)
+    shown = RichTable(
+        title=escape(table.title), title_justify="left", title_style="bold", header_style="", box=None
+    )
     for column in table.columns:
         numeric = all(isinstance(plain(v), int | float | None) for v in column.values)
         first = column is table.columns[0]
         shown.add_column(
-            column.heading.replace("_", " "), justify="right" if numeric else "left", no_wrap=first or numeric
+            escape(column.heading.replace("_", " ")),
+            justify="right" if numeric else "left",
+            no_wrap=first or numeric,
         )
     rows = table.rows()
     for row in rows[:lines]:
-        shown.add_row(*map(cell, row))
+        shown.add_row(*(escape(cell(value)) for value in row))
     if lines is not None and len(rows) > lines:
         shown.caption = f"… {len(rows) - lines} more lines; --out writes all"
     return shown
