@@ -1,0 +1,1 @@
+"""CAN buses and CANopen nodes for all drivers: `session.CanSession`, `canopen_node.CanopenNode`."""
