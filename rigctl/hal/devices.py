@@ -54,6 +54,8 @@ class RigContext:
         Folder of the rig file; relative paths in settings start here.
     log_dir : Path or None
         Where devices may write logs.
+    wire_log_dir : Path or None
+        Where drivers log every transfer on their wires (`rigctl.hal.wirelog`; CAN: `drivers.can`); None: not.
     buses : mapping
         The rig file's `[buses.NAME]` tables.
     lease : Lease
@@ -68,6 +70,7 @@ class RigContext:
     place: str
     folder: Path
     log_dir: Path | None = None
+    wire_log_dir: Path | None = None
     buses: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Mapping[str, Any]])
     lease: Lease = field(default_factory=Lease)
     board: StatusBoard = field(default_factory=StatusBoard)

@@ -20,13 +20,15 @@ Add one method to the class of the device; nothing is inherited::
 
 Rules:
 
-* it is called after `open` and before `close`, from one thread; it never enables, moves, pressurises or closes a
-  relay, and never writes a parameter;
+* it is called after `open` and before `close`, from one thread; it never enables, moves, pressurises or
+  closes a relay, and never writes a parameter;
 * `round_trips` > 0 (`devices test`): make so many request-answer exchanges of the kind that a run makes, and
   read back every setting that matters for safety (time-out and action on loss of communication, heartbeat
   consumer and its reaction, scaling, ranges). A device that only talks by itself gives no times;
-* `round_trips` = 0 (`devices monitor`, several times a second): newest values only, quickly, no parameter traffic;
-* a value that is not valid is `Reading(..., value=None, fault="sensor open circuit (2.1 mA)")`, never a number;
+* `round_trips` = 0 (`devices monitor`, several times a second): newest values only, quickly, no parameter
+  traffic;
+* a value that is not valid is `Reading(…, value=None, fault="sensor open circuit (2.1 mA)")`, never a
+  number;
 * a setting that lets something move or stay under pressure when the link breaks is a `Finding` with
   `unsafe=True`: the test of the device then *fails*. Everything else that deserves a look is a warning only;
 * a device that does not answer raises `DeviceError`, as everywhere.
