@@ -1,13 +1,13 @@
 """The few numbers between the bench's plant and its emulated devices.
 
-Job: `RigSignals` holds what devices command (inputs of the plant) and what the plant does (outputs), safe between
-threads. Not its job: physics, noise of sensors beyond what the plant gives, protocols.
+Job: `RigSignals` holds what devices command (inputs of the plant) and what the plant does (outputs), safe
+between threads. Not its job: physics, noise of sensors beyond what the plant gives, protocols.
 
-The plant's thread calls `commands()` before a step and `publish(end_ns, torque_nm=values, ...)` after it; times are
-`time.monotonic_ns()` on the plant's own grid. Devices call `set` for what they command. They read `newest`, or the
-value *at* a time, so that several listeners read the same samples and a 1 kHz PDO carries the sample of its own
-millisecond: the samples of a step are known at its end at the earliest (a step is 10 ms), so such a PDO asks for a
-time some 20 ms back.
+The plant's thread calls `commands()` before a step and `publish(end_ns, torque_nm=values, ...)` after it;
+times are `time.monotonic_ns()` on the plant's own grid. Devices call `set` for what they command. They read
+`newest`, or the value *at* a time, so that several listeners read the same samples and a 1 kHz PDO carries
+the sample of its own millisecond: the samples of a step are known at its end at the earliest (a step is 10
+ms), so such a PDO asks for a time some 20 ms back.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ NS_PER_MS = 1_000_000
 #: Length of the memory of outputs. Far more than the plant's step plus the devices' delay.
 HISTORY_MS = 2048
 
+#: Readings of the rig's own sensors; the regulator's pressure and the drive's speed are those of their own
+#: sensors, with errors of their own. `position_turns` (true) counts on over all turns since the start.
 OUTPUTS = (
-    "torque_nm", "pressure_bar", "speed_rpm", "position_turns", "disc_temperature_degc", "regulator_pressure_bar",
+    "torque_nm", "pressure_bar", "speed_rpm", "position_turns", "disc_temperature_degc",
+    "regulator_pressure_bar", "drive_speed_rpm", "motor_torque_nm",
 )  # fmt: skip
 
 
@@ -88,7 +91,7 @@ class RigSignals:
     # -- outputs of the plant -----------------------------------------------------------------------
 
     def publish(self, end_ns: int, **samples: Sequence[float]) -> None:
-        """Samples of a step at 1 kHz, oldest first; the last belongs to the millisecond that ends at `end_ns`."""
+        """Samples of a step at 1 kHz, oldest first; the last is of the millisecond that ends at `end_ns`."""
         end_ms = end_ns // NS_PER_MS
         with self._lock:
             length = 0
@@ -107,7 +110,7 @@ class RigSignals:
         return self._newest[name]
 
     def at(self, name: str, t_ns: int) -> float:
-        """The value that belongs to the millisecond that begins at `t_ns`; the newest where that is not known."""
+        """The value of the millisecond that begins at `t_ns`; the newest where that is not known."""
         end_ms = self._end_ms
         if end_ms is None:
             return self._newest[name]

@@ -48,14 +48,14 @@ class RigServer:
     def __init__(
         self, plant: Any, ring: Any, microphone: Any, *, real_time: bool, relay_timeout_s: float
     ) -> None:
-        from sim_hardware.plant import Commands
+        from sim_hardware.plant import Commands, behind_relay
 
         self._plant = plant
         self._ring = ring
         self._microphone = microphone
         self._real_time = real_time
         self._relay_timeout_s = relay_timeout_s if real_time else VIRTUAL_RELAY_TIMEOUT_S
-        self._commands_type = Commands
+        self._commands_type, self._behind_relay = Commands, behind_relay
         self._controller: Link | None = None
         self._safety: Link | None = None
         self._relay = False
@@ -223,17 +223,17 @@ class RigServer:
     def _commands(self, points: dict[str, Any] | None) -> Any:
         """Set-points as the hardware sees them: the open relay takes torque and pressure away."""
         points = points or {}
-        return self._commands_type(
+        wanted = self._commands_type(
             speed_set_rpm=float(points.get("speed_rpm", 0.0)),
             speed_ramp_rpm_per_s=float(points.get("ramp_rpm_per_s", 50.0)),
-            drive_enabled=bool(points.get("enable", False)) and self._relay,
+            drive_enabled=bool(points.get("enable", False)),
             quick_stop=bool(points.get("quick_stop", False)),
             pressure_set_bar=float(points.get("pressure_bar", 0.0)),
-            vent=bool(points.get("vent", True)) or not self._relay,
-            ventilator_m3_h=float(points.get("ventilator_m3_h", 0.0))
-            if self._relay
-            else self._plant.ventilator_max_m3_h,
-            relay_closed=self._relay,
+            vent=bool(points.get("vent", True)),
+            ventilator_m3_h=float(points.get("ventilator_m3_h", 0.0)),
+        )
+        return self._behind_relay(
+            wanted, closed=self._relay, ventilator_max_m3_h=self._plant.ventilator_max_m3_h
         )
 
     def _send(self, link: Link, message: dict[str, Any]) -> Link | None:

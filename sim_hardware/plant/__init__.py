@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sim_hardware.plant.plant import Plant, SoundJob, sound_of
     from sim_hardware.plant.settings import PlantSettings
-    from sim_hardware.plant.words import Commands, PlantStep, PlantTruth
+    from sim_hardware.plant.words import Commands, PlantStep, PlantTruth, behind_relay
 
 _HOME = {
     "Plant": "plant",
@@ -22,10 +22,20 @@ _HOME = {
     "PlantStep": "words",
     "PlantTruth": "words",
     "SoundJob": "plant",
+    "behind_relay": "words",
     "sound_of": "plant",
 }
 
-__all__ = ["Commands", "Plant", "PlantSettings", "PlantStep", "PlantTruth", "SoundJob", "sound_of"]
+__all__ = [
+    "Commands",
+    "Plant",
+    "PlantSettings",
+    "PlantStep",
+    "PlantTruth",
+    "SoundJob",
+    "behind_relay",
+    "sound_of",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,11 +1,11 @@
 """What goes into the plant and what comes out of a step: commands, samples, and the truth for tests.
 
-NOT its job: physics.
+Job: these words, and what the safety relay leaves of commands (`behind_relay`). NOT its job: physics.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,15 @@ class Commands:
     vent: bool = False
     ventilator_m3_h: float = 0.0
     relay_closed: bool = False
+
+
+def behind_relay(wanted: Commands, *, closed: bool, ventilator_max_m3_h: float) -> Commands:
+    """What reaches the rig of what is commanded: the open relay takes torque and pressure away, and cools."""
+    if closed:
+        return replace(wanted, relay_closed=True)
+    return replace(
+        wanted, drive_enabled=False, vent=True, ventilator_m3_h=ventilator_max_m3_h, relay_closed=False
+    )
 
 
 @dataclass(frozen=True, slots=True)
