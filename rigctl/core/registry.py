@@ -44,15 +44,37 @@ class Registry:
         """
         if (role, kind) in self._table:
             return self._table[role, kind]
-        for point in self._entry_points():
-            if point.name == f"{role}.{kind}":
-                return point.value
+        values = {point.value for point in self._entry_points() if point.name == f"{role}.{kind}"}
+        if len(values) > 1:
+            raise ConfigError(
+                f"{role} of kind {kind!r} is registered by more than one package: "
+                f"{', '.join(self._owners(role, kind))}.",
+                place=place,
+                value=kind,
+                remedy="Uninstall all but one.",
+            )
+        if values:
+            return values.pop()
         import difflib
 
         known = self.kinds(role)
         near = difflib.get_close_matches(kind, known, n=1)
         hint = f"Did you mean {near[0]!r}?" if near else f"Known kinds: {', '.join(known) or 'none'}."
         raise ConfigError(f"{role} has no kind {kind!r}.", place=place, value=kind, remedy=hint)
+
+    def origin(self, role: str, kind: str) -> str:
+        """Where a kind comes from: "rigctl", or name and version of the installed package.
+
+        Raises
+        ------
+        ConfigError
+            No such kind.
+        """
+        self.target(role, kind)
+        if (role, kind) in self._table:
+            return "rigctl"
+        owners = self._owners(role, kind)
+        return ", ".join(owners) or "an installed package"
 
     def load(self, role: str, kind: str, *, place: str = "") -> Any:
         """Import and return the class of a kind.
@@ -65,6 +87,14 @@ class Registry:
             The module or a library it needs cannot be imported.
         """
         return load_target(self.target(role, kind, place=place), place=place or f"{role} {kind!r}")
+
+    def _owners(self, role: str, kind: str) -> list[str]:
+        """Packages whose entry points register a kind."""
+        return sorted(
+            f"{point.dist.name} {point.dist.version}"
+            for point in self._entry_points()
+            if point.name == f"{role}.{kind}" and point.dist is not None
+        )
 
     @staticmethod
     def _entry_points() -> list[Any]:
@@ -79,9 +109,16 @@ def load_target(target: str, *, place: str) -> Any:
     Raises
     ------
     DeviceError
-        The module, a library it needs, or the class is missing.
+        The module, a library it needs, or the class is missing, or the module fails when it is imported.
     """
     module_name, _, attribute = target.partition(":")
+    if not module_name or not attribute:
+        raise DeviceError(
+            f"{target!r} does not name a class.",
+            place=place,
+            value=target,
+            remedy='The entry point must read "module:Class".',
+        )
     try:
         module = importlib.import_module(module_name)
         return getattr(module, attribute)
@@ -94,3 +131,10 @@ def load_target(target: str, *, place: str) -> Any:
         ) from error
     except AttributeError as error:
         raise DeviceError(f"{module_name} has no {attribute!r}.", place=place, value=target) from error
+    except Exception as error:  # a driver's own fault when it is imported: it must break nothing else
+        raise DeviceError(
+            f"importing {target!r} fails: {type(error).__name__}: {error}.",
+            place=place,
+            value=target,
+            remedy="Correct or uninstall that driver.",
+        ) from error
