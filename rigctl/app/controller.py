@@ -99,7 +99,7 @@ class Controller:
     def _connect_guard(self) -> Guard:
         """The watchdog listens once it has its own connection to the rig."""
         link = connect(self._run_dir / "watchdog.sock", CONNECT_TIMEOUT_S, "watchdog")
-        guard = Guard(link, self._file.limits_hash8)
+        guard = Guard(link, self._file.limits_hash8, lockstep=self._file.time == "virtual")
         guard.hello(run_id=self._campaign.name, pid=os.getpid(), campaign=str(self._campaign))
         return guard
 

@@ -3,7 +3,7 @@
     recommendation_study(read_model(Path("configs/brakes/model.toml")))
 
 Job: the ranked table, its sentences, its figure. NOT its job: measures and verdicts
-(`sim_hardware.brake_model.recommending`, where the rule stands).
+(`sim_hardware.brake_model.design.recommending`, where the rule stands).
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from rigctl.model.output import Study, Table
 from rigctl.model.sensitivity import STEP, Band, design
 from rigctl.model.sensitivity_figures import ranking_figure
 from rigctl.model.sensitivity_tables import column
-from sim_hardware.brake_model.linear import MU, LinearModel
-from sim_hardware.brake_model.recommending import (
+from sim_hardware.brake_model.design.recommending import (
     VERDICTS,
     RecommendationRule,
     Recommendations,
     Verdict,
     recommend,
 )
-from sim_hardware.brake_model.variations import all_variations, groups_like
+from sim_hardware.brake_model.design.variations import all_variations, groups_like
+from sim_hardware.brake_model.linear import MU, LinearModel
 
 MUS = (0.3, 0.4, 0.5, 0.6)
 _TOP = 20

@@ -17,8 +17,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_hardware.brake_model.eigen.mode_shapes import point_coordinates
 from sim_hardware.brake_model.linear import value_of
-from sim_hardware.brake_model.mode_shapes import point_coordinates
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.spec import Contact, Spring
 

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigctl.model.sensitivity_tables import BELOW_HZ
-from sim_hardware.brake_model.effects import Effect, Influence, influence_of, one_of_each_pair
+from sim_hardware.brake_model.design.effects import Effect, Influence, influence_of, one_of_each_pair
+from sim_hardware.brake_model.design.robustness import Robustness, robustness
+from sim_hardware.brake_model.design.variations import Mode, Variation, all_variations
 from sim_hardware.brake_model.linear import LinearModel
-from sim_hardware.brake_model.robustness import Robustness, robustness
-from sim_hardware.brake_model.variations import Mode, Variation, all_variations
 
 Array = NDArray[np.float64]
 Verdict = Literal["holds", "holds in part", "does not hold", "cannot be tested"]

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from rigctl.model.claims_evidence import NEAR_CONTACT, Claim, Evidence, Untestable, Verdict, share_verdict
+from sim_hardware.brake_model.design.margins import onsets
+from sim_hardware.brake_model.design.matrix_batches import matrix_batch
+from sim_hardware.brake_model.design.variations import Mode, all_variations
 from sim_hardware.brake_model.linear import PRESSURE, SLOPE
-from sim_hardware.brake_model.margins import onsets
-from sim_hardware.brake_model.matrix_batches import matrix_batch
-from sim_hardware.brake_model.variations import Mode, all_variations
 
 SECTION = "4.3.4"
 #: rises below this share of a mode's real part do not count against "always"

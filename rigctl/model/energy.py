@@ -2,7 +2,7 @@
 11)?
 
 Job: the study of linear against cubic decay from every mode shape, its verdict, table and figure. NOT its
-job: integration and energies (`sim_hardware.brake_model.energy`).
+job: integration and energies (`sim_hardware.brake_model.time_domain.energy`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from rigctl.analysis.style import (
 from rigctl.model.beside_paper import Comparison, paper_table
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.assembly import Brake
-from sim_hardware.brake_model.energy import INITIAL_NM, Decay, decays
+from sim_hardware.brake_model.time_domain.energy import INITIAL_NM, Decay, decays
 
 #: factors on the realistic cubic stiffness
 STRENGTHS = (1.0, 10.0, 100.0, 1000.0)
@@ -85,7 +85,7 @@ def decay_study(
     Raises
     ------
     ValueError
-        no such mode, and as `sim_hardware.brake_model.energy.decays`
+        no such mode, and as `sim_hardware.brake_model.time_domain.energy.decays`
     """
     chosen = tuple(sorted({float(s) for s in strengths}))
     if not chosen or chosen[0] <= 0.0:

@@ -2,8 +2,8 @@
 band.
 
 Job: the study "pairs" (facts, table, complex plane). NOT its job: eigenvalues
-(`sim_hardware.brake_model.band`), files of matrices (`sim_hardware.brake_model.foreign`), courses over a
-quantity (`rigctl.model.locus`).
+(`sim_hardware.brake_model.eigen.band`), files of matrices (`sim_hardware.brake_model.foreign.files`), courses
+over a quantity (`rigctl.model.locus`).
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 
 from rigctl.analysis.style import BLUE, INK, TITLE, VERMILION, grid, label_axes, new_figure
 from rigctl.model.output import Column, Study, Table
-from sim_hardware.brake_model.band import DAMPING_MAX, EigenPairs, eigen_pairs_of
+from sim_hardware.brake_model.eigen.band import DAMPING_MAX, EigenPairs, eigen_pairs_of
+from sim_hardware.brake_model.foreign.reduction import Reduction
 from sim_hardware.brake_model.linear import LinearModel, value_of
-from sim_hardware.brake_model.reduction import Reduction
 
 _UNSTABLE = "#FBE3D6"
 #: alignment below which vectors and sensitivities of a pair are called doubtful

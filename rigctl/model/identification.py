@@ -35,10 +35,10 @@ from rigctl.model.output import Study
 from rigctl.model.runner import RunOptions, seeded
 from rigctl.model.runner_model import load_source, model_source
 from rigctl.model.study_tasks import described
-from sim_hardware.brake_model.fit import Fit, Measured, fit, potential_scale_reduction
+from sim_hardware.brake_model.design.fit import Fit, Measured, fit, potential_scale_reduction
+from sim_hardware.brake_model.design.scatter import Variable, variables
 from sim_hardware.brake_model.identify import replaced_parameter
 from sim_hardware.brake_model.linear import PRESSURE, known, value_of
-from sim_hardware.brake_model.scatter import Variable, variables
 
 Array = NDArray[np.float64]
 

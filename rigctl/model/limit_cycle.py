@@ -1,7 +1,7 @@
 """Squeal beyond its onset as a study: bifurcation diagram, hysteresis, level of the sound.
 
-Job: run `sim_hardware.brake_model.limit_cycle` and `.squeal_ramp` with the friction law and the radiation of
-the simulated rig (plant file), and say what comes out. NOT its job: integration, drawing
+Job: run `sim_hardware.brake_model.time_domain.limit_cycle` and `.squeal_ramp` with the friction law and the
+radiation of the simulated rig (plant file), and say what comes out. NOT its job: integration, drawing
 (`limit_cycle_figures`), sound that the rig adds (motor, ventilator, background).
 """
 
@@ -22,9 +22,9 @@ from rigctl.core.units import RAD_S_PER_RPM, REFERENCE_PRESSURE_PA
 from rigctl.model.limit_cycle_figures import bifurcation_figure, ramp_figure
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.assembly import Brake
-from sim_hardware.brake_model.limit_cycle import Branches, branches
-from sim_hardware.brake_model.squeal_points import squeal_points
-from sim_hardware.brake_model.squeal_ramp import Ramp, ramps
+from sim_hardware.brake_model.time_domain.limit_cycle import Branches, branches
+from sim_hardware.brake_model.time_domain.squeal_points import squeal_points
+from sim_hardware.brake_model.time_domain.squeal_ramp import Ramp, ramps
 
 #: speed of the paper's measurements (section 4.1), and v_s where no plant file says it
 SPEED_RPM, SATURATION_M_S = 40.0, 0.10

@@ -26,8 +26,8 @@ from rigctl.analysis.style import (
     label_axes,
     new_figure,
 )
-from sim_hardware.brake_model.limit_cycle import Branches
-from sim_hardware.brake_model.squeal_ramp import Ramp
+from sim_hardware.brake_model.time_domain.limit_cycle import Branches
+from sim_hardware.brake_model.time_domain.squeal_ramp import Ramp
 
 Levels = Callable[[Any], Any]
 _LABELS = {

@@ -45,7 +45,7 @@ def read_model(path: Path) -> LinearModel:
         from sim_hardware.brake_model.parametric import LinearBrake
 
         return LinearBrake(read_brake(path))
-    from sim_hardware.brake_model.foreign import load_matrices
+    from sim_hardware.brake_model.foreign.files import load_matrices
 
     with translated(path), study_errors(str(path)):
         return load_matrices(path)

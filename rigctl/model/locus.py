@@ -1,7 +1,7 @@
 """Root locus of a model for people: which mode becomes unstable where, and with whom it couples (Figs 7, 13).
 
 Job: the study (facts, tables, figures) of a tracked locus, and the paper's two figures with its numbers
-beside ours. NOT its job: tracking (`sim_hardware.brake_model.tracking`), drawing (`locus_figures`).
+beside ours. NOT its job: tracking (`sim_hardware.brake_model.eigen.tracking`), drawing (`locus_figures`).
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from rigctl.model.beside_paper import Comparison, paper_table
 from rigctl.model.locus_figures import Section, course_figure, parameter_label, plane_figure, value_text
 from rigctl.model.output import Column, Study, Table
+from sim_hardware.brake_model.eigen.tracking import Flag, Locus, Path, track
+from sim_hardware.brake_model.eigen.tracking_band import track_band
+from sim_hardware.brake_model.eigen.tracking_events import ModeCoupling, mode_couplings
 from sim_hardware.brake_model.linear import LinearModel, ParameterGroup
-from sim_hardware.brake_model.tracking import Flag, Locus, Path, track
-from sim_hardware.brake_model.tracking_band import track_band
-from sim_hardware.brake_model.tracking_events import ModeCoupling, mode_couplings
 
 #: what the paper prints: section 4.2 with Fig. 7, section 5.2 with Fig. 13
 FIGURE_7 = {"coefficient_of_friction": 0.64, "frequency_hz": 2400.0}
@@ -54,7 +54,7 @@ def locus_study(
 
     Parameters
     ----------
-    what, grid, values, asymmetric : see `sim_hardware.brake_model.tracking.track`
+    what, grid, values, asymmetric : see `sim_hardware.brake_model.eigen.tracking.track`
     band_hz : follow only the modes that lie in this band at the start; for large models made elsewhere
     name : stem of the files
 

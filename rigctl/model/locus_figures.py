@@ -31,7 +31,7 @@ from rigctl.analysis.style import (
     label_axes,
     new_figure,
 )
-from sim_hardware.brake_model.tracking import Crossing, Locus
+from sim_hardware.brake_model.eigen.tracking import Crossing, Locus
 
 UNSTABLE = "#FBE3D6"
 _OTHERS = (BLUE, GREEN, PURPLE, ORANGE, SKY)

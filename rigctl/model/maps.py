@@ -1,6 +1,6 @@
 """Maps of stability and stability boundaries for people: facts, tables, figures.
 
-NOT its job: eigenvalues (`sim_hardware.brake_model.maps`, `.boundary`), drawing (`maps_figures`).
+NOT its job: eigenvalues (`sim_hardware.brake_model.eigen.maps`, `.boundary`), drawing (`maps_figures`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rigctl.model.maps_figures import curve_figure, growth_figure, map_figure
 from rigctl.model.output import Column, Study, Table
-from sim_hardware.brake_model.boundary import (
+from sim_hardware.brake_model.eigen.boundary import (
     BoundaryCurve,
     Moved,
     StabilityBoundary,
@@ -22,9 +22,9 @@ from sim_hardware.brake_model.boundary import (
     growth_along,
     stability_boundary,
 )
-from sim_hardware.brake_model.directions import Direction, direction
+from sim_hardware.brake_model.eigen.directions import Direction, direction
+from sim_hardware.brake_model.eigen.maps import EigenvalueMap, eigenvalue_map
 from sim_hardware.brake_model.linear import MU, PRESSURE, LinearModel
-from sim_hardware.brake_model.maps import EigenvalueMap, eigenvalue_map
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def map_study(
 
     Parameters
     ----------
-    x, y, values, workers : see `sim_hardware.brake_model.maps.eigenvalue_map`
+    x, y, values, workers : see `sim_hardware.brake_model.eigen.maps.eigenvalue_map`
 
     Returns
     -------
@@ -75,7 +75,7 @@ def boundary_study(
 
     Parameters
     ----------
-    over : see `sim_hardware.brake_model.directions.direction`
+    over : see `sim_hardware.brake_model.eigen.directions.direction`
     search : range, searched from its first number. None: mu from 0 to 1, pressure from 0 to 30 bar; anything
         else from its value half as much down and half as much again up
     values : other values than the file's

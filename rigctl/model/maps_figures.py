@@ -26,9 +26,9 @@ from rigctl.analysis.style import (
     label_axes,
     new_figure,
 )
-from sim_hardware.brake_model.boundary import BoundaryCurve, StabilityBoundary
-from sim_hardware.brake_model.directions import Direction
-from sim_hardware.brake_model.maps import BoundaryLine, EigenvalueMap
+from sim_hardware.brake_model.eigen.boundary import BoundaryCurve, StabilityBoundary
+from sim_hardware.brake_model.eigen.directions import Direction
+from sim_hardware.brake_model.eigen.maps import BoundaryLine, EigenvalueMap
 
 Array = NDArray[np.float64]
 

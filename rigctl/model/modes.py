@@ -2,7 +2,7 @@
 deforming.
 
 Models without geometry (matrices made elsewhere) get their degrees of freedom as bars instead of a drawing.
-NOT its job: eigenvalues and energies (`sim_hardware.brake_model.mode_shapes`), the drawings themselves
+NOT its job: eigenvalues and energies (`sim_hardware.brake_model.eigen.mode_shapes`), the drawings themselves
 (`modes_figures`, `brake_drawing`, `brake_painting`, `brake_page`).
 """
 
@@ -23,14 +23,14 @@ from rigctl.model.brake_page import PageMode, modes_page
 from rigctl.model.brake_painting import Motions, animated_gif, label_of
 from rigctl.model.modes_figures import budget_figure, freedoms_figure, shape_figure
 from rigctl.model.output import Column, Study, Table
-from sim_hardware.brake_model.linear import LinearModel
-from sim_hardware.brake_model.mode_shapes import (
+from sim_hardware.brake_model.eigen.mode_shapes import (
     ModeShape,
     Participation,
     find_shape,
     mode_shapes,
     participation,
 )
+from sim_hardware.brake_model.linear import LinearModel
 from sim_hardware.brake_model.parametric import LinearBrake
 
 ANIMATIONS = ("gif", "html", "mp4")

@@ -1,6 +1,6 @@
 """Drawings of a mode: the deformed brake at two phases, energies and budget as bars, freedoms as bars.
 
-NOT its job: shapes and energies (`sim_hardware.brake_model.mode_shapes`), how a brake is painted
+NOT its job: shapes and energies (`sim_hardware.brake_model.eigen.mode_shapes`), how a brake is painted
 (`brake_painting`).
 """
 
@@ -24,7 +24,7 @@ from rigctl.analysis.style import (
 )
 from rigctl.model.brake_drawing import Drawing
 from rigctl.model.brake_painting import Motions, label_of, paint
-from sim_hardware.brake_model.mode_shapes import ModeShape, Participation
+from sim_hardware.brake_model.eigen.mode_shapes import ModeShape, Participation
 
 #: nearly standing wave: a quarter period later there is nothing to see
 _STANDING = 0.98

@@ -2,7 +2,8 @@
 point.
 
 Job: the study of one motion integrated with all events, in the words and units of the rig. NOT its job:
-integration (`sim_hardware.brake_model.motion`), bifurcations and long runs, drawing (`motion_figures`).
+integration (`sim_hardware.brake_model.time_domain.motion`), bifurcations and long runs, drawing
+(`motion_figures`).
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from pydantic import ValidationError
 from rigctl.model.motion_figures import forces_figure, motion_figure
 from rigctl.model.output import Column, Study, Table
 from sim_hardware.brake_model.assembly import Brake
-from sim_hardware.brake_model.energy import balance
 from sim_hardware.brake_model.friction import (
     ConstantFriction,
     FrictionLaw,
     LinearFriction,
     SaturatingFriction,
 )
-from sim_hardware.brake_model.motion import CouplingForces, Motion, integrate
-from sim_hardware.brake_model.reference import WorkingPoint
+from sim_hardware.brake_model.time_domain.energy import balance
+from sim_hardware.brake_model.time_domain.motion import CouplingForces, Motion, integrate
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint
 
 Array = NDArray[np.float64]
 LAWS = ("constant", "linear", "saturating")

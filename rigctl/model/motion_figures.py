@@ -25,7 +25,7 @@ from rigctl.analysis.style import (
     label_axes,
     new_figure,
 )
-from sim_hardware.brake_model.motion import CouplingForces, Motion
+from sim_hardware.brake_model.time_domain.motion import CouplingForces, Motion
 
 Array = NDArray[np.float64]
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, GREY)

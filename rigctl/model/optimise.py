@@ -3,7 +3,7 @@
     study = optimise_study(path, free=["x_pis:0.014:0.022"], groups=["abutment_stiffness"])
 
 Job: read bounds, `optimise`, and `optimise_study` with facts, tables and a figure. NOT its job: the climbing
-itself (`sim_hardware.brake_model.optimise`), parallel running (`runner`, `study_tasks`).
+itself (`sim_hardware.brake_model.design.optimise`), parallel running (`runner`, `study_tasks`).
 """
 
 from __future__ import annotations
@@ -33,8 +33,7 @@ from rigctl.model.output import Study
 from rigctl.model.runner import RunOptions
 from rigctl.model.runner_model import load_source, model_source
 from rigctl.model.study_tasks import described
-from sim_hardware.brake_model.linear import LinearModel, known, value_of
-from sim_hardware.brake_model.optimise import (
+from sim_hardware.brake_model.design.optimise import (
     Bounds,
     Margin,
     at_bounds,
@@ -43,7 +42,8 @@ from sim_hardware.brake_model.optimise import (
     starts,
     values_at,
 )
-from sim_hardware.brake_model.scatter import variables
+from sim_hardware.brake_model.design.scatter import variables
+from sim_hardware.brake_model.linear import LinearModel, known, value_of
 
 Array = NDArray[np.float64]
 

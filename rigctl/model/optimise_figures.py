@@ -27,9 +27,9 @@ from rigctl.analysis.style import (
     new_figure,
 )
 from rigctl.model.output import Column, Table
-from sim_hardware.brake_model.first_onset import scan
+from sim_hardware.brake_model.design.optimise import stability_margin
+from sim_hardware.brake_model.eigen.first_onset import scan
 from sim_hardware.brake_model.linear import LinearModel, known, value_of
-from sim_hardware.brake_model.optimise import stability_margin
 
 if TYPE_CHECKING:
     from rigctl.model.optimise import OptimiseResult

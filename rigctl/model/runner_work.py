@@ -93,7 +93,7 @@ def code_identity(function: str) -> dict[str, str]:
 
     own = sys.modules.get(function.partition(":")[0])
     own_file = getattr(own, "__file__", None) or ""
-    files = sorted(Path(numerics.__path__[0]).glob("*.py"))
+    files = sorted(Path(numerics.__path__[0]).rglob("*.py"))
     digest = hashlib.sha256()
     for path in [*files, *([Path(own_file)] if own_file else [])]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes())

@@ -3,7 +3,8 @@
     study = scatter_study(Path("configs/brakes/model.toml"), "pressure", np.linspace(0, 30, 61), samples=1000)
 
 Job: `scatter`, and `scatter_study` with tables, facts and figures. NOT its job: random factors,
-intervals and correlations themselves (`sim_hardware.brake_model.scatter`), parallel running (`runner`).
+intervals and correlations themselves (`sim_hardware.brake_model.design.scatter`), parallel running
+(`runner`).
 """
 
 from __future__ import annotations
@@ -30,9 +31,7 @@ from rigctl.model.scatter_figures import (
     samples_table,
 )
 from rigctl.model.study_tasks import described
-from sim_hardware.brake_model.first_onset import Scan, scan
-from sim_hardware.brake_model.linear import LinearModel, known
-from sim_hardware.brake_model.scatter import (
+from sim_hardware.brake_model.design.scatter import (
     Drivers,
     Law,
     Shares,
@@ -43,6 +42,8 @@ from sim_hardware.brake_model.scatter import (
     variables,
     wilson,
 )
+from sim_hardware.brake_model.eigen.first_onset import Scan, scan
+from sim_hardware.brake_model.linear import LinearModel, known
 
 Array = NDArray[np.float64]
 
@@ -97,7 +98,7 @@ def scatter(
     path : model file
     over : quantity that is raised, "pressure" (bar) or "mu"
     values_over : (m,) its values, rising
-    spread, law : see `sim_hardware.brake_model.scatter`
+    spread, law : see `sim_hardware.brake_model.design.scatter`
     samples, seed : number of random brakes, and the seed they all come from
     names, groups : what scatters; every parameter of the file where both are left out
     values : other values than the file's, for all samples

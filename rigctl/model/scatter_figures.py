@@ -25,10 +25,10 @@ from rigctl.analysis.style import (
     new_figure,
 )
 from rigctl.model.output import Column, Table
-from sim_hardware.brake_model.linear import MU, PRESSURE, LinearModel, known
-from sim_hardware.brake_model.scatter import (
+from sim_hardware.brake_model.design.scatter import (
     Drivers,
 )
+from sim_hardware.brake_model.linear import MU, PRESSURE, LinearModel, known
 
 if TYPE_CHECKING:
     from rigctl.model.scatter import ScatterResult

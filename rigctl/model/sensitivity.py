@@ -32,17 +32,17 @@ from rigctl.model.sensitivity_tables import (
     per_unit_table,
     ranking_table,
 )
-from sim_hardware.brake_model.effects import Influence, influence, one_of_each_pair
-from sim_hardware.brake_model.eigen_systems import EigenSystem
-from sim_hardware.brake_model.linear import MU, LinearModel
-from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.robustness import Robustness, robustness
-from sim_hardware.brake_model.sensitivity import (
+from sim_hardware.brake_model.design.effects import Influence, influence, one_of_each_pair
+from sim_hardware.brake_model.design.robustness import Robustness, robustness
+from sim_hardware.brake_model.design.sensitivity import (
     Sensitivities,
     eigen_sensitivities,
     parameter_names,
 )
-from sim_hardware.brake_model.variations import ASYMMETRIC, MODES, Mode, all_variations, groups_like
+from sim_hardware.brake_model.design.variations import ASYMMETRIC, MODES, Mode, all_variations, groups_like
+from sim_hardware.brake_model.eigen.eigen_systems import EigenSystem
+from sim_hardware.brake_model.linear import MU, LinearModel
+from sim_hardware.brake_model.parametric import LinearBrake
 
 STEP = 0.10
 _TOP = 20

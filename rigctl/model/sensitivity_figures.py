@@ -29,9 +29,9 @@ from rigctl.analysis.style import (
     label_axes,
     new_figure,
 )
-from sim_hardware.brake_model.effects import Effect, Influence
+from sim_hardware.brake_model.design.effects import Effect, Influence
+from sim_hardware.brake_model.design.robustness import Robustness
 from sim_hardware.brake_model.linear import MU
-from sim_hardware.brake_model.robustness import Robustness
 
 Array = NDArray[np.float64]
 

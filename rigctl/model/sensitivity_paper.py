@@ -21,9 +21,9 @@ from rigctl.model.sensitivity_tables import (
     modifications_table,
     paper_table,
 )
-from sim_hardware.brake_model.effects import influence
+from sim_hardware.brake_model.design.effects import influence
+from sim_hardware.brake_model.design.variations import Mode, all_variations
 from sim_hardware.brake_model.linear import LinearModel
-from sim_hardware.brake_model.variations import Mode, all_variations
 
 
 def figure_8_study(model: LinearModel) -> Study:

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigctl.model.output import Column, Table
-from sim_hardware.brake_model.effects import Influence, one_of_each_pair
-from sim_hardware.brake_model.eigen_systems import EigenSystem
+from sim_hardware.brake_model.design.effects import Influence, one_of_each_pair
+from sim_hardware.brake_model.design.robustness import Robustness
+from sim_hardware.brake_model.design.sensitivity import Sensitivities
+from sim_hardware.brake_model.eigen.eigen_systems import EigenSystem
 from sim_hardware.brake_model.linear import LinearModel
-from sim_hardware.brake_model.robustness import Robustness
-from sim_hardware.brake_model.sensitivity import Sensitivities
 
 #: upper end of the frequencies for which the paper trusts its rigid bodies, and squeal was tested (4.3.4)
 BELOW_HZ = 5000.0

@@ -14,10 +14,10 @@ import numpy as np
 
 from rigctl.model.runner import generator
 from rigctl.model.runner_model import load_source
-from sim_hardware.brake_model.first_onset import scan
-from sim_hardware.brake_model.fit import Measured, chain, fitted
-from sim_hardware.brake_model.optimise import Bounds, improve
-from sim_hardware.brake_model.scatter import Variable, changed, draw
+from sim_hardware.brake_model.design.fit import Measured, chain, fitted
+from sim_hardware.brake_model.design.optimise import Bounds, improve
+from sim_hardware.brake_model.design.scatter import Variable, changed, draw
+from sim_hardware.brake_model.eigen.first_onset import scan
 
 
 def described(variables: Sequence[Variable]) -> dict[str, list[str]]:

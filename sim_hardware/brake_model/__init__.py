@@ -4,9 +4,10 @@ Pure numerics in SI units. NOT its job: the slow physics around the brake (press
 friction map), sound, clocks, devices; it imports nothing of the project. Names below are imported on first
 use, so that importing the package costs nothing and numba is loaded only by whoever integrates in time.
 
-Modules: `spec` (the TOML as frozen models), `assembly` (matrices, coupling forces), `friction` (laws),
-`stability` (eigenvalues, onset), `modal`/`contact`/`kernels`/`simd`/`integrator` (fast time integration),
-`reference` (slow, tight, independent time integration), `identify` (parameters from published results).
+Modules: `spec` (the TOML as frozen models), `lines` and `assembly` (coupling forces, matrices), `laws` and
+`friction`, `linear` (what studies ask of a model), `parametric` (our brake as one), `stability` (onset),
+`identify` (parameters from published results). Packages: `minimal` (1- and 2-DOF models of section 1),
+`eigen` (eigenvalues), `design` (sensitivity to optimum), `foreign` (matrices made elsewhere), `time_domain`.
 """
 
 from importlib import import_module
@@ -14,16 +15,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim_hardware.brake_model.assembly import Brake, load_brake
-    from sim_hardware.brake_model.integrator import SquealIntegrator, compile_kernels
+    from sim_hardware.brake_model.parametric import LinearBrake
     from sim_hardware.brake_model.spec import BrakeSpec
     from sim_hardware.brake_model.stability import Prediction, predict
+    from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator, compile_kernels
 
 _HOME = {
     "Brake": "assembly",
     "load_brake": "assembly",
+    "LinearBrake": "parametric",
     "BrakeSpec": "spec",
-    "SquealIntegrator": "integrator",
-    "compile_kernels": "integrator",
+    "SquealIntegrator": "time_domain.integrator",
+    "compile_kernels": "time_domain.integrator",
     "Prediction": "stability",
     "predict": "stability",
 }
@@ -31,6 +34,7 @@ _HOME = {
 __all__ = [
     "Brake",
     "BrakeSpec",
+    "LinearBrake",
     "Prediction",
     "SquealIntegrator",
     "compile_kernels",

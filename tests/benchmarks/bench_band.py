@@ -22,9 +22,9 @@ from scipy.sparse.linalg import eigs
 sys.path.insert(0, str(Path(__file__).parents[1] / "verification" / "brake_model"))
 from disc_brake_mesh import disc_brake
 
-from sim_hardware.brake_model.band import eigen_pairs_of_matrices
-from sim_hardware.brake_model.band_arnoldi import Found, cover
-from sim_hardware.brake_model.band_pencil import Pencil
+from sim_hardware.brake_model.eigen.band import eigen_pairs_of_matrices
+from sim_hardware.brake_model.eigen.band_arnoldi import Found, cover
+from sim_hardware.brake_model.eigen.band_pencil import Pencil
 from sim_hardware.brake_model.linear import Matrices
 
 BAND = (1000.0, 5000.0)

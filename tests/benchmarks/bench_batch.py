@@ -25,10 +25,10 @@ sys.path.insert(0, str(Path(__file__).parent))
 import exudyn_brake
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.batch import BatchIntegrator
 from sim_hardware.brake_model.friction import SaturatingFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
-from sim_hardware.brake_model.reference import WorkingPoint, motion
+from sim_hardware.brake_model.time_domain.batch import BatchIntegrator
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint, motion
 
 PLANT = load_brake(Path(__file__).parents[2] / "configs" / "brakes" / "plant.toml")
 BAR, MU, K, SLIP, SATURATION = 20.0, 0.4, 0.0576, 0.44, 0.01

@@ -17,9 +17,9 @@ from scipy.integrate import solve_ivp
 
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.friction import SaturatingFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator, compile_kernels
-from sim_hardware.brake_model.reference import ReferenceModel, WorkingPoint, motion
 from sim_hardware.brake_model.stability import predict
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator, compile_kernels
+from sim_hardware.brake_model.time_domain.reference import ReferenceModel, WorkingPoint, motion
 
 PLANT = load_brake(Path(__file__).parents[2] / "configs" / "brakes" / "plant.toml")
 BAR, MU, K, SLIP, SATURATION = 20.0, 0.4, 0.0576, 0.44, 0.01

@@ -25,13 +25,13 @@ import numpy as np
 import scipy.linalg
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.boundary import boundary_curve, stability_boundary
-from sim_hardware.brake_model.boundary_newton import crossing_between, secular_crossings
+from sim_hardware.brake_model.eigen.boundary import boundary_curve, stability_boundary
+from sim_hardware.brake_model.eigen.boundary_newton import crossing_between, secular_crossings
+from sim_hardware.brake_model.eigen.maps import eigenvalue_map
+from sim_hardware.brake_model.eigen.secular import grid_eigenvalues
+from sim_hardware.brake_model.eigen.secular_equation import sorted_eigenvalues
 from sim_hardware.brake_model.linear import Matrices
-from sim_hardware.brake_model.maps import eigenvalue_map
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.secular import grid_eigenvalues
-from sim_hardware.brake_model.secular_equation import sorted_eigenvalues
 
 BRAKES = Path(__file__).parents[2] / "configs" / "brakes"
 SLOPE = 0.0576

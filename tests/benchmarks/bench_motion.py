@@ -15,12 +15,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.energy import decays
 from sim_hardware.brake_model.friction import ConstantFriction, LinearFriction, SaturatingFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
-from sim_hardware.brake_model.motion import integrate
-from sim_hardware.brake_model.reference import ReferenceModel, WorkingPoint
 from sim_hardware.brake_model.spec import BrakeSpec
+from sim_hardware.brake_model.time_domain.energy import decays
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.motion import integrate
+from sim_hardware.brake_model.time_domain.reference import ReferenceModel, WorkingPoint
 
 BRAKES = Path(__file__).parents[2] / "configs" / "brakes"
 PLANT, MODEL = load_brake(BRAKES / "plant.toml"), load_brake(BRAKES / "model.toml")

@@ -17,19 +17,19 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.eigen_systems import eigen_system
-from sim_hardware.brake_model.linear import value_of
-from sim_hardware.brake_model.matrix_batches import matrix_batch
-from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.resolving import resolve
-from sim_hardware.brake_model.sensitivity import (
+from sim_hardware.brake_model.design.matrix_batches import matrix_batch
+from sim_hardware.brake_model.design.resolving import resolve
+from sim_hardware.brake_model.design.sensitivity import (
     derivatives,
     eigen_sensitivities,
     parameter_names,
     sensitivities,
     sensitivities_of,
 )
-from sim_hardware.brake_model.variations import all_variations
+from sim_hardware.brake_model.design.variations import all_variations
+from sim_hardware.brake_model.eigen.eigen_systems import eigen_system
+from sim_hardware.brake_model.linear import value_of
+from sim_hardware.brake_model.parametric import LinearBrake
 
 MODEL = LinearBrake(load_brake(Path(__file__).parents[2] / "configs" / "brakes" / "model.toml"))
 POINT = {"mu": 0.4, "pressure": 10.0}

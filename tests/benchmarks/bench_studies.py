@@ -23,8 +23,8 @@ from scipy.optimize import differential_evolution, minimize
 from rigctl.model.runner import RunOptions, generator, run_study, seeded
 from rigctl.model.runner_model import load_source, model_source
 from rigctl.model.scatter import scatter
-from sim_hardware.brake_model.optimise import Bounds, improve, stability_margin, values_at
-from sim_hardware.brake_model.scatter import draw, variables
+from sim_hardware.brake_model.design.optimise import Bounds, improve, stability_margin, values_at
+from sim_hardware.brake_model.design.scatter import draw, variables
 from sim_hardware.brake_model.stability import onset_pressure
 
 MODEL = Path("configs/brakes/model.toml")

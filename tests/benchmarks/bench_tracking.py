@@ -22,9 +22,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from sim_hardware.brake_model import load_brake
+from sim_hardware.brake_model.eigen.tracking import track
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.tracking import track
 
 BRAKES = Path(__file__).parents[2] / "configs" / "brakes"
 REFINED = 400

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from sim_hardware.brake_model.assembly import Array, Brake
-from sim_hardware.brake_model.modal import FrictionGroup, friction_groups
+from sim_hardware.brake_model.time_domain.modal import FrictionGroup, friction_groups
 
 sys.exudynFast = True  # type: ignore[attr-defined]  # its build without range checks
 try:

@@ -100,9 +100,9 @@ def reduce(
     """
     from rigctl.model.foreign import reduction_study
     from rigctl.model.loading import read_model, study_errors
-    from sim_hardware.brake_model.foreign import save_matrices
-    from sim_hardware.brake_model.matrix_model import MatrixModel
-    from sim_hardware.brake_model.reduction import reduce_model
+    from sim_hardware.brake_model.foreign.files import save_matrices
+    from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
+    from sim_hardware.brake_model.foreign.reduction import reduce_model
 
     limits = parse_band(band)
     points = [parse_settings(text.split(",")) for text in at or []] or [{}]

@@ -124,11 +124,11 @@ def influence(
     """How modifications move every real part at constant friction, and what kind of effect that is (Fig. 10).
 
     Classes: narrow band, broad band, mode coupling (neighbours move in opposite directions), monodirectional
-    (all in one direction). The thresholds stand in `sim_hardware.brake_model.effects.EffectRule`.
+    (all in one direction). The thresholds stand in `sim_hardware.brake_model.design.effects.EffectRule`.
     """
     from rigctl.core.errors import ConfigError
     from rigctl.model.sensitivity import influence_study
-    from sim_hardware.brake_model.variations import MODES, Mode
+    from sim_hardware.brake_model.design.variations import MODES, Mode
 
     values, limits = parse_settings(settings), parse_band(band)
     for name in mode or ():

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.batch import BatchIntegrator
-from sim_hardware.brake_model.batch_serial import SerialBatch, batch_of
-from sim_hardware.brake_model.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.batch import BatchIntegrator
+from sim_hardware.brake_model.time_domain.batch_serial import SerialBatch, batch_of
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
 
 PLANT = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "plant.toml")
 N = 2 * PLANT.n_dof

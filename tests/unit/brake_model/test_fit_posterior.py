@@ -8,9 +8,16 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.fit import Measured, chain, fit, gradient, potential_scale_reduction, predict
+from sim_hardware.brake_model.design.fit import (
+    Measured,
+    chain,
+    fit,
+    gradient,
+    potential_scale_reduction,
+    predict,
+)
+from sim_hardware.brake_model.design.scatter import variables
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.scatter import variables
 
 BRAKES = Path("configs/brakes")
 PLANT = LinearBrake(load_brake(BRAKES / "plant.toml"))

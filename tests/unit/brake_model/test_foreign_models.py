@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import io, sparse
 
-from sim_hardware.brake_model.foreign import MatrixModel, load_matrices, save_matrices
+from sim_hardware.brake_model.foreign.files import MatrixModel, load_matrices, save_matrices
+from sim_hardware.brake_model.foreign.matrix_model import DENSE_UP_TO, part_factors
 from sim_hardware.brake_model.linear import LinearModel, Matrices
-from sim_hardware.brake_model.matrix_model import DENSE_UP_TO, part_factors
 
 M = np.diag([1.0, 2.0])
 K = np.array([[300.0, -100.0], [-100.0, 200.0]])

@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 
-from sim_hardware.brake_model.contact import deviation
 from sim_hardware.brake_model.friction import (
     ConstantFriction,
     FrictionLaw,
     LinearFriction,
     SaturatingFriction,
 )
+from sim_hardware.brake_model.time_domain.contact import deviation
 
 speeds = st.floats(-3.0, 3.0)
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.boundary import stability_boundary
-from sim_hardware.brake_model.contours import crossed_edges, linked
-from sim_hardware.brake_model.maps import eigenvalue_map
+from sim_hardware.brake_model.eigen.boundary import stability_boundary
+from sim_hardware.brake_model.eigen.contours import crossed_edges, linked
+from sim_hardware.brake_model.eigen.maps import eigenvalue_map
 from sim_hardware.brake_model.parametric import LinearBrake
 
 BRAKES = {name: LinearBrake(load_brake(Path(__file__).parents[3] / f"configs/brakes/{name}.toml")) for name in

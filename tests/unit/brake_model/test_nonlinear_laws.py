@@ -12,7 +12,6 @@ from pydantic import ValidationError
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.friction import ConstantFriction, LinearFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
 from sim_hardware.brake_model.laws import (
     cubic_for_doubled_stiffness,
     nonlinear_couplings,
@@ -23,10 +22,11 @@ from sim_hardware.brake_model.laws import (
     spring_tangent,
     with_cubic_contacts,
 )
-from sim_hardware.brake_model.motion import WorkingCourse, integrate
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.reference import ReferenceModel, WorkingPoint
 from sim_hardware.brake_model.spec import BrakeSpec
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.motion import WorkingCourse, integrate
+from sim_hardware.brake_model.time_domain.reference import ReferenceModel, WorkingPoint
 
 #: the first run compiles the integrator
 pytestmark = pytest.mark.timeout(600)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.linear import Matrices, NamedQuantity, unknown_quantity
-from sim_hardware.brake_model.optimise import (
+from sim_hardware.brake_model.design.optimise import (
     Bounds,
     _watched,
     at_bounds,
@@ -18,8 +17,9 @@ from sim_hardware.brake_model.optimise import (
     starts,
     values_at,
 )
+from sim_hardware.brake_model.design.scatter import Variable, variables
+from sim_hardware.brake_model.linear import Matrices, NamedQuantity, unknown_quantity
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.scatter import Variable, variables
 from sim_hardware.brake_model.stability import eigen_pairs
 
 MODEL = LinearBrake(load_brake(Path("configs/brakes/model.toml")))

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.first_onset import onset_gradient, scan
+from sim_hardware.brake_model.design.scatter import LAWS, changed, draw, drivers, variables, wilson
+from sim_hardware.brake_model.eigen.first_onset import onset_gradient, scan
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.scatter import LAWS, changed, draw, drivers, variables, wilson
 from sim_hardware.brake_model.stability import onset_mu, onset_pressure
 
 BRAKES = Path("configs/brakes")
@@ -194,6 +194,6 @@ def test_chance_rarely_exceeds_the_threshold_of_drivers():
 
 
 def test_models_too_large_for_all_eigenvalues_are_refused(monkeypatch):
-    monkeypatch.setattr("sim_hardware.brake_model.first_onset.MOST_FREEDOMS", 13)
+    monkeypatch.setattr("sim_hardware.brake_model.eigen.first_onset.MOST_FREEDOMS", 13)
     with pytest.raises(ValueError, match=r"has 14 degrees of freedom.*up to 13; reduce it"):
         scan(MODEL, "pressure", PRESSURES)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.integrator import SquealIntegrator, compile_kernels
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator, compile_kernels
 
 PLANT = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "plant.toml")
 POINT: dict[str, Any] = {

@@ -14,13 +14,13 @@ from pydantic import ValidationError
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.friction import ConstantFriction, LinearFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
-from sim_hardware.brake_model.motion import integrate
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.reference import WorkingPoint
 from sim_hardware.brake_model.rigid_body import eigenvalues, rigid_motions
 from sim_hardware.brake_model.spec import BrakeSpec
 from sim_hardware.brake_model.stability import eigen_pairs, onset_mu, predict
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.motion import integrate
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint
 
 #: the first run compiles the integrator
 pytestmark = pytest.mark.timeout(600)

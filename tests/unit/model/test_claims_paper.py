@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from rigctl.app.model import sensitivity as family
 from rigctl.model.claims import CLAIMS, claims_study, evaluate, scattered_brakes, scattered_verdicts
 from rigctl.model.loading import read_model
-from sim_hardware.brake_model.matrix_model import MatrixModel
+from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
 from sim_hardware.brake_model.parametric import LinearBrake
 
 FILE = Path(__file__).parents[3] / "configs" / "brakes" / "model.toml"

@@ -15,8 +15,8 @@ from rigctl.app.model import pairs as command
 from rigctl.core.errors import ConfigError
 from rigctl.model.foreign import pairs_study
 from rigctl.model.loading import read_model
-from sim_hardware.brake_model.foreign import save_matrices
-from sim_hardware.brake_model.matrix_model import MatrixModel
+from sim_hardware.brake_model.foreign.files import save_matrices
+from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 FLUTTER = {

@@ -51,7 +51,7 @@ def test_study_with_ramps_and_sound(tmp_path: Path) -> None:
 
 def test_sound_is_that_of_the_simulated_rig(tmp_path: Path) -> None:
     """The rig's own integrator with its own weights at a constant working point: the same level."""
-    from sim_hardware.brake_model.integrator import SquealIntegrator
+    from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
 
     radiation, brake = read_radiation(PLANT), read_brake(BRAKE)
     study = squeal_study(brake, "pressure", [18.0], radiation=radiation, longest_s=2.0)

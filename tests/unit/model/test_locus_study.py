@@ -13,8 +13,8 @@ from rigctl.core.errors import ConfigError
 from rigctl.model.loading import read_model
 from rigctl.model.locus import critical_mode, figure_7_study, figure_13_study, locus_study, section_of
 from rigctl.model.output import plain, write
-from sim_hardware.brake_model.tracking import track
-from sim_hardware.brake_model.tracking_events import mode_couplings
+from sim_hardware.brake_model.eigen.tracking import track
+from sim_hardware.brake_model.eigen.tracking_events import mode_couplings
 
 BRAKES = Path(__file__).parents[3] / "configs/brakes"
 

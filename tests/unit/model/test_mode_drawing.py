@@ -21,7 +21,7 @@ from rigctl.model.loading import read_model
 from rigctl.model.modes import animate, modes_study, motions_of, page
 from rigctl.model.output import write
 from sim_hardware.brake_model.assembly import Brake
-from sim_hardware.brake_model.mode_shapes import find_shape, mode_shapes
+from sim_hardware.brake_model.eigen.mode_shapes import find_shape, mode_shapes
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.spec import BrakeSpec
 

@@ -15,7 +15,7 @@ from rigctl.model.energy import decay_study, figure_11_study, first_clear
 from rigctl.model.motion import least_stable_start, main_frequency_hz, simulation_study
 from rigctl.model.output import write
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.energy import decays
+from sim_hardware.brake_model.time_domain.energy import decays
 
 #: the first run compiles the integrator
 pytestmark = pytest.mark.timeout(600)

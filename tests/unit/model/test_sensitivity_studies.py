@@ -17,7 +17,7 @@ from rigctl.model.loading import read_model
 from rigctl.model.output import write
 from rigctl.model.sensitivity import design, influence_study, robustness_study, sensitivity_study
 from rigctl.model.sensitivity_paper import figure_8_study, figure_9_study, figure_10_study
-from sim_hardware.brake_model.foreign import save_matrices
+from sim_hardware.brake_model.foreign.files import save_matrices
 from sim_hardware.brake_model.linear import value_of
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"

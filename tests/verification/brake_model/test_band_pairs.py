@@ -10,10 +10,10 @@ import pytest
 from disc_brake_mesh import disc_brake
 from scipy import sparse
 
-from sim_hardware.brake_model import band as band_module
-from sim_hardware.brake_model.band import EigenPairs, eigen_pairs_of_matrices
-from sim_hardware.brake_model.band_count import missed
-from sim_hardware.brake_model.band_pencil import Pencil
+from sim_hardware.brake_model.eigen import band as band_module
+from sim_hardware.brake_model.eigen.band import EigenPairs, eigen_pairs_of_matrices
+from sim_hardware.brake_model.eigen.band_count import missed
+from sim_hardware.brake_model.eigen.band_pencil import Pencil
 from sim_hardware.brake_model.linear import Matrices
 
 SMALL = disc_brake(2, 12)  # 96 degrees of freedom

@@ -19,13 +19,13 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.boundary import boundary_curve, stability_boundary
-from sim_hardware.brake_model.boundary_newton import eigenvalue_rate
-from sim_hardware.brake_model.directions import direction
+from sim_hardware.brake_model.design.variations import variation
+from sim_hardware.brake_model.eigen.boundary import boundary_curve, stability_boundary
+from sim_hardware.brake_model.eigen.boundary_newton import eigenvalue_rate
+from sim_hardware.brake_model.eigen.directions import direction
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, known
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.stability import onset_mu, onset_pressure
-from sim_hardware.brake_model.variations import variation
 
 BRAKES = {name: LinearBrake(load_brake(Path(__file__).parents[3] / f"configs/brakes/{name}.toml")) for name in
           ("basic", "model", "plant")}  # fmt: skip

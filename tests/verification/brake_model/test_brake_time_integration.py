@@ -11,9 +11,9 @@ from scipy.linalg import expm
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
 from sim_hardware.brake_model.friction import LinearFriction, SaturatingFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
-from sim_hardware.brake_model.reference import WorkingPoint, motion
 from sim_hardware.brake_model.spec import BrakeSpec
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint, motion
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 PLANT = load_brake(BRAKES / "plant.toml")

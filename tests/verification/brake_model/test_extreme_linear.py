@@ -14,11 +14,11 @@ from pydantic import ValidationError
 from scipy import sparse
 from small_brakes import CONTACT, brake_text
 
-from sim_hardware.brake_model import band as band_module
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.band import eigen_pairs_of, eigen_pairs_of_matrices
+from sim_hardware.brake_model.eigen import band as band_module
+from sim_hardware.brake_model.eigen.band import eigen_pairs_of, eigen_pairs_of_matrices
+from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
 from sim_hardware.brake_model.linear import Matrices
-from sim_hardware.brake_model.matrix_model import MatrixModel
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.spec import BrakeSpec
 from sim_hardware.brake_model.stability import eigen_pairs, onset_mu, onset_pressure, predict

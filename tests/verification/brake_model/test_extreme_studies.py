@@ -11,12 +11,12 @@ import pytest
 from small_brakes import CONTACT, brake_text
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.boundary import stability_boundary
+from sim_hardware.brake_model.eigen.boundary import stability_boundary
+from sim_hardware.brake_model.eigen.tracking import track
+from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
 from sim_hardware.brake_model.linear import LinearModel
-from sim_hardware.brake_model.matrix_model import MatrixModel
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.spec import BrakeSpec
-from sim_hardware.brake_model.tracking import track
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 NUMBERS = {"m_pad": 0.4, "c_n": 2e8, "d_n": 300.0, "c_x": 1e7, "c_y": 1e7, "d_x": 40.0, "d_y": 25.0}

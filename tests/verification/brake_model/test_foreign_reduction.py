@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from disc_brake_mesh import disc_brake
 
-from sim_hardware.brake_model.band import eigen_pairs_of
-from sim_hardware.brake_model.boundary import stability_boundary
-from sim_hardware.brake_model.matrix_model import DENSE_UP_TO, MatrixModel
-from sim_hardware.brake_model.reduction import Reduction, reduce_model
-from sim_hardware.brake_model.tracking import track
+from sim_hardware.brake_model.eigen.band import eigen_pairs_of
+from sim_hardware.brake_model.eigen.boundary import stability_boundary
+from sim_hardware.brake_model.eigen.tracking import track
+from sim_hardware.brake_model.foreign.matrix_model import DENSE_UP_TO, MatrixModel
+from sim_hardware.brake_model.foreign.reduction import Reduction, reduce_model
 
 BAND = (1000.0, 2500.0)
 LARGE = MatrixModel("disc", disc_brake(3, 30), {"mu": 0.4, "k": 0.05, "p": 0.0})

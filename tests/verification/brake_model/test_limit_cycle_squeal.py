@@ -9,12 +9,12 @@ import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
 from sim_hardware.brake_model.friction import SaturatingFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
-from sim_hardware.brake_model.limit_cycle import SquealSimulation, branches
-from sim_hardware.brake_model.reference import WorkingPoint, motion
-from sim_hardware.brake_model.squeal_points import critical_mode, squeal_points
-from sim_hardware.brake_model.squeal_ramp import ramps
 from sim_hardware.brake_model.stability import onset_pressure
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.limit_cycle import SquealSimulation, branches
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint, motion
+from sim_hardware.brake_model.time_domain.squeal_points import critical_mode, squeal_points
+from sim_hardware.brake_model.time_domain.squeal_ramp import ramps
 
 PLANT = load_brake(Path(__file__).parents[3] / "configs" / "brakes" / "plant.toml")
 SLIDING: dict[str, Any] = {"slip_m_s": 0.44, "saturation_m_s": 0.1}

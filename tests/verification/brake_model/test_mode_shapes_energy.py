@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model import load_brake
+from sim_hardware.brake_model.eigen.mode_shapes import (
+    find_shape,
+    mode_shapes,
+    participation,
+    point_coordinates,
+)
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity
-from sim_hardware.brake_model.mode_shapes import find_shape, mode_shapes, participation, point_coordinates
 from sim_hardware.brake_model.parametric import LinearBrake
 
 ROOT = Path(__file__).parents[3]

@@ -11,15 +11,15 @@ from oscillators import belt
 from scipy.linalg import expm
 from scipy.special import ellipk
 
-from sim_hardware.brake_model import reference
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.energy import balance
 from sim_hardware.brake_model.friction import ConstantFriction, LinearFriction, SaturatingFriction
-from sim_hardware.brake_model.integrator import SquealIntegrator
 from sim_hardware.brake_model.laws import with_cubic_contacts
-from sim_hardware.brake_model.motion import WorkingCourse, integrate
-from sim_hardware.brake_model.reference import WorkingPoint
 from sim_hardware.brake_model.spec import BrakeSpec
+from sim_hardware.brake_model.time_domain import reference
+from sim_hardware.brake_model.time_domain.energy import balance
+from sim_hardware.brake_model.time_domain.integrator import SquealIntegrator
+from sim_hardware.brake_model.time_domain.motion import WorkingCourse, integrate
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint
 
 #: the first run compiles the integrator
 pytestmark = pytest.mark.timeout(600)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.energy import decays, linear_energy, loss_rate, mode_starts
 from sim_hardware.brake_model.friction import ConstantFriction
-from sim_hardware.brake_model.motion import integrate
-from sim_hardware.brake_model.reference import WorkingPoint
 from sim_hardware.brake_model.stability import eigen_pairs
+from sim_hardware.brake_model.time_domain.energy import decays, linear_energy, loss_rate, mode_starts
+from sim_hardware.brake_model.time_domain.motion import integrate
+from sim_hardware.brake_model.time_domain.reference import WorkingPoint
 
 #: the first run compiles the integrator
 pytestmark = pytest.mark.timeout(600)

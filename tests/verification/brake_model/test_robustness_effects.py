@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from sim_hardware.brake_model.assembly import load_brake
-from sim_hardware.brake_model.effects import EffectRule, classify, influence, one_of_each_pair
+from sim_hardware.brake_model.design.effects import EffectRule, classify, influence, one_of_each_pair
+from sim_hardware.brake_model.design.recommending import recommend
+from sim_hardware.brake_model.design.robustness import robustness
+from sim_hardware.brake_model.design.variations import all_variations
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.recommending import recommend
-from sim_hardware.brake_model.robustness import robustness
-from sim_hardware.brake_model.variations import all_variations
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 MODEL = LinearBrake(load_brake(BRAKES / "model.toml"))

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim_hardware.brake_model.assembly import load_brake
+from sim_hardware.brake_model.eigen.secular import grid_eigenvalues, prediction_weights
+from sim_hardware.brake_model.eigen.secular_equation import sorted_eigenvalues
 from sim_hardware.brake_model.linear import Matrices
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.secular import grid_eigenvalues, prediction_weights
-from sim_hardware.brake_model.secular_equation import sorted_eigenvalues
 
 BRAKES = {name: load_brake(Path(__file__).parents[3] / f"configs/brakes/{name}.toml") for name in
           ("basic", "model", "plant")}  # fmt: skip

@@ -13,15 +13,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.eigen_systems import eigen_system, mode_order
-from sim_hardware.brake_model.linear import Matrices, NamedQuantity, ParameterGroup, value_of
-from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.sensitivity import (
+from sim_hardware.brake_model.design.sensitivity import (
     derivatives,
     eigen_sensitivities,
     parameter_names,
     sensitivities,
 )
+from sim_hardware.brake_model.eigen.eigen_systems import eigen_system, mode_order
+from sim_hardware.brake_model.linear import Matrices, NamedQuantity, ParameterGroup, value_of
+from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.spec import BrakeSpec
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"

@@ -9,10 +9,10 @@ import pytest
 from scipy import sparse
 
 from sim_hardware.brake_model import load_brake
-from sim_hardware.brake_model.matrix_model import MatrixModel
+from sim_hardware.brake_model.eigen.tracking import Flag, track
+from sim_hardware.brake_model.eigen.tracking_band import track_band
+from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.tracking import Flag, track
-from sim_hardware.brake_model.tracking_band import track_band
 
 ROOT = Path(__file__).parents[3]
 

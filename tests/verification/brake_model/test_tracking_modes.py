@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim_hardware.brake_model import load_brake
+from sim_hardware.brake_model.eigen.tracking import Flag, track
+from sim_hardware.brake_model.eigen.tracking_events import mode_couplings
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.stability import onset_pressure
-from sim_hardware.brake_model.tracking import Flag, track
-from sim_hardware.brake_model.tracking_events import mode_couplings
 
 ROOT = Path(__file__).parents[3]
 Array = np.ndarray

@@ -7,16 +7,22 @@ import pytest
 from scipy import sparse
 
 from sim_hardware.brake_model.assembly import load_brake
+from sim_hardware.brake_model.design.margins import onsets
+from sim_hardware.brake_model.design.matrix_batches import matrix_batch
+from sim_hardware.brake_model.design.resolving import resolve
+from sim_hardware.brake_model.design.resolving_band import resolve_in_band
+from sim_hardware.brake_model.design.sensitivity import eigen_sensitivities
+from sim_hardware.brake_model.design.variations import (
+    Variation,
+    all_variations,
+    group_of,
+    groups_like,
+    variation,
+)
+from sim_hardware.brake_model.foreign.matrix_model import MatrixModel
 from sim_hardware.brake_model.linear import Matrices, NamedQuantity, ParameterGroup, value_of
-from sim_hardware.brake_model.margins import onsets
-from sim_hardware.brake_model.matrix_batches import matrix_batch
-from sim_hardware.brake_model.matrix_model import MatrixModel
 from sim_hardware.brake_model.parametric import LinearBrake
-from sim_hardware.brake_model.resolving import resolve
-from sim_hardware.brake_model.resolving_band import resolve_in_band
-from sim_hardware.brake_model.sensitivity import eigen_sensitivities
 from sim_hardware.brake_model.stability import onset_pressure
-from sim_hardware.brake_model.variations import Variation, all_variations, group_of, groups_like, variation
 
 BRAKES = Path(__file__).parents[3] / "configs" / "brakes"
 BRAKE = load_brake(BRAKES / "model.toml")

@@ -1,0 +1,1 @@
+"""What design changes do to stability: sensitivity, variations, robustness, scatter, optimum, fit."""

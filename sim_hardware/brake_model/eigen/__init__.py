@@ -1,0 +1,1 @@
+"""Eigenvalues of a `linear.LinearModel`: all or in a band, tracked, on grids, their boundary, mode shapes."""

@@ -1,0 +1,1 @@
+"""The brake in time: fast fixed-rate integration, alone or in batches, exact events, limit cycles, energy."""
