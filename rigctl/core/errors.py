@@ -16,6 +16,8 @@ Job: give every failure of the program one drawn place and one printed form. Not
 
 from __future__ import annotations
 
+from typing import Self
+
 
 class RigctlError(Exception):
     """Root of all errors that the program raises on purpose.
@@ -38,6 +40,22 @@ class RigctlError(Exception):
         self.value = value
         self.remedy = remedy
         super().__init__(str(self))
+
+    def within(self, place: str) -> Self:
+        """The same error told by somebody who knows a wider place: "rig.toml: devices.drive".
+
+        Nothing is said twice: a place that names the device already stays, and the file is named once.
+        """
+        file, _, inner = place.partition(": ")
+        own = self.place
+        if own == place or own.startswith((f"{place}.", f"{place}:")):
+            return self
+        own = own.removeprefix(f"{file}: ").removeprefix(inner).lstrip(": ")
+        wider = f"{place}: {own}" if own else place
+        named = type(self).__new__(type(self))  # a subclass may be made from other arguments
+        named.__dict__.update(self.__dict__)
+        RigctlError.__init__(named, self.problem, place=wider, value=self.value, remedy=self.remedy)
+        return named
 
     def __str__(self) -> str:
         text = f"{self.place}: {self.problem}" if self.place else self.problem

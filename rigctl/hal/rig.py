@@ -14,7 +14,7 @@ from typing import Any
 from rigctl.config.rig import ROLES, RigConfig
 from rigctl.core.blocks import Block
 from rigctl.core.channels import ChannelSpec
-from rigctl.core.errors import ConfigError, RigctlError
+from rigctl.core.errors import ConfigError, DeviceError, RigctlError
 from rigctl.core.registry import Registry
 from rigctl.core.units import NS_PER_S
 from rigctl.hal.devices import (
@@ -72,11 +72,20 @@ class Rig:
         """
         try:
             for role in ROLES:
-                self._devices[role].open()
+                self._open(role)
                 self._opened.append(role)
         except BaseException:
             self.close()
             raise
+
+    def _open(self, role: str) -> None:
+        try:
+            self._devices[role].open()
+        except DeviceError as error:
+            named = error.within(f"{self.context.place}: devices.{role}")
+            if named is error:
+                raise
+            raise named from error
 
     def close(self) -> None:
         """Safe state, then close the devices in reverse order."""
