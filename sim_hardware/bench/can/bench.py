@@ -18,6 +18,7 @@ import can
 from pydantic import ValidationError
 
 from rigctl.core.errors import ConfigError, DeviceError
+from sim_hardware.bench.can import loopback
 from sim_hardware.bench.can.faults import FaultRule, FrameFaults
 from sim_hardware.bench.can.frames import HIGHEST_COB_ID, Frame
 from sim_hardware.bench.can.node import Device, NmtState, Node
@@ -77,6 +78,8 @@ class BenchCan:
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         self._bus, self._clock_ns = bus, clock_ns
+        self._mark = loopback.new_mark()
+        self.deaf_to_itself = loopback.drop_marked(bus, self._mark)
         self.scheduler = Scheduler(clock_ns())
         self.statistics = Statistics()
         self.faults = FrameFaults(self.scheduler, self._put, self._reboot)
@@ -90,8 +93,8 @@ class BenchCan:
                 node_settings, device, self.scheduler, lambda frame, n=node_id: self._from_node(n, frame)
             )
             self.nodes[name] = self._by_id[node_id] = node
-        self._routes: dict[int, list[Node]] = {}
-        self._routes_version = -1
+            node.on_reroute = self._forget_routes
+        self._routes: dict[int, list[Node]] | None = None
         self._produced: set[int] = set()
         self._errors_in_a_row = 0
         self._posted: deque[Callable[[], None]] = deque()
@@ -191,14 +194,16 @@ class BenchCan:
             self.scheduler.now_ns = max(self.scheduler.now_ns, self._clock_ns())
             self._deliver(Frame(cob_id, bytes(message.data), message.is_remote_frame), nodes, None)
 
+    def _forget_routes(self) -> None:
+        self._routes = None
+
     def _listeners(self, cob_id: int) -> list[Node] | None:
-        version = sum(node.routes_version for node in self._by_id.values())
-        if version != self._routes_version:
+        if self._routes is None:
             routes: dict[int, list[Node]] = {}
             for node in self._by_id.values():
                 for known in node.routes:
                     routes.setdefault(known, []).append(node)
-            self._routes, self._routes_version = routes, version
+            self._routes = routes
         return self._routes.get(cob_id)
 
     def _deliver(self, frame: Frame, nodes: list[Node], sender: int | None) -> None:
@@ -220,13 +225,14 @@ class BenchCan:
         self._produced.add(frame.cob_id)
         self._put(frame)
         nodes = self._listeners(frame.cob_id)
-        if nodes:
+        if nodes is not None and (len(nodes) > 1 or nodes[0].node_id != node_id):
             self._deliver(frame, nodes, node_id)
 
     def _put(self, frame: Frame) -> None:
         message = can.Message(
-            arbitration_id=frame.cob_id, is_extended_id=False, is_remote_frame=frame.remote, data=frame.data
-        )
+            timestamp=self._mark, arbitration_id=frame.cob_id, is_extended_id=False,
+            is_remote_frame=frame.remote, data=frame.data,
+        )  # fmt: skip
         try:
             self._bus.send(message)
             self.statistics.sent += 1

@@ -33,6 +33,10 @@ SDO_TIMEOUT_MS = 1000
 _COMMUNICATION_AREA = (0x1000, 0x1FFF)
 
 
+def _nothing() -> None:
+    """Nobody wants to be told."""
+
+
 class NmtState(enum.IntEnum):
     """States as they stand in the heartbeat; OFF is a device without power."""
 
@@ -107,6 +111,8 @@ class Node:
     ----------
     routes : dict of int to callable
         What to do with frames, by identifier; replaced whenever it changes.
+    on_reroute : callable
+        Told that it has been replaced.
     """
 
     def __init__(
@@ -117,7 +123,7 @@ class Node:
         self.state = NmtState.OFF
         self.dictionary = ObjectDictionary()
         self.routes: dict[int, Callable[[Frame], None]] = {}
-        self.routes_version = 0
+        self.on_reroute: Callable[[], None] = _nothing
         self.tpdos: list[Tpdo] = []
         self.rpdos: list[Rpdo] = []
         self._transmit = transmit
@@ -227,7 +233,7 @@ class Node:
             if pdo.valid:
                 routes[pdo.cob_id] = lambda frame, pdo=pdo: self._on_remote(pdo, frame)
         self.routes = routes
-        self.routes_version += 1
+        self.on_reroute()
 
     def _on_nmt(self, frame: Frame) -> None:
         if frame.remote or len(frame.data) < 2 or frame.data[1] not in (0, self.node_id):

@@ -28,18 +28,38 @@ class Encoder(Device):
         self._settings, self._signals, self._delay_ns = settings, signals, delay_ns
         self._offset = 0
         self._steps = 0
+        self._sign = 1
+        self._scale = settings.steps_per_turn, settings.steps_per_turn * settings.turns
         self.stuck = False
 
     def define(self) -> None:
         add, u16, u32 = self.node.add, DataType.UNSIGNED16, DataType.UNSIGNED32
         steps, turns = self._settings.steps_per_turn, self._settings.turns
-        self._mode = add(0x6000, 0, "operating parameters", u16, Access.RW, SCALING, high=REVERSED | SCALING)
+        self._mode = add(
+            0x6000,
+            0,
+            "operating parameters",
+            u16,
+            Access.RW,
+            SCALING,
+            check=self._check_mode,
+            written=self._rescale,
+        )
         self._per_turn = add(
-            0x6001, 0, "steps per turn", u32, Access.RW, steps, low=1, high=steps, check=self._check_per_turn
+            0x6001,
+            0,
+            "steps per turn",
+            u32,
+            Access.RW,
+            steps,
+            low=1,
+            high=steps,
+            check=self._check_per_turn,
+            written=self._rescale,
         )
         self._total = add(
             0x6002, 0, "total steps", u32, Access.RW, steps * turns, low=1, high=steps * turns,
-            check=self._check_total,
+            check=self._check_total, written=self._rescale,
         )  # fmt: skip
         self._preset = add(
             0x6003, 0, "preset value", u32, Access.RW, check=self._check_preset, written=self._set_preset
@@ -55,6 +75,7 @@ class Encoder(Device):
 
     def power_on(self) -> None:
         self._offset = 0
+        self._rescale()
         self.disturb(stuck=self.stuck)
 
     def refresh(self, due_ns: int) -> None:
@@ -72,12 +93,18 @@ class Encoder(Device):
         else:
             self.node.emergencies.went(POSITION_ERROR)
 
-    def _read(self, turns: float, speed_rpm: float) -> None:
+    def _rescale(self) -> None:
+        """Direction, steps per turn and total steps, from the parameters."""
         mode = self._mode.number()
-        sign = -1 if mode & REVERSED else 1
-        scaled = mode & SCALING
-        per_turn = self._per_turn.number() if scaled else self._settings.steps_per_turn
-        total = self._total.number() if scaled else self._settings.steps_per_turn * self._settings.turns
+        self._sign = -1 if mode & REVERSED else 1
+        if mode & SCALING:
+            self._scale = self._per_turn.number(), self._total.number()
+        else:
+            steps = self._settings.steps_per_turn
+            self._scale = steps, steps * self._settings.turns
+
+    def _read(self, turns: float, speed_rpm: float) -> None:
+        sign, (per_turn, total) = self._sign, self._scale
         self._steps = math.floor(sign * turns * per_turn)
         self._position.value = (self._steps + self._offset) % total
         self._speed.value = max(-32768, min(32767, round(sign * speed_rpm * 10.0)))
@@ -90,6 +117,12 @@ class Encoder(Device):
         assert isinstance(value, int)
         if value >= self._total.number():
             raise Abort(AbortCode.TOO_HIGH)
+
+    @staticmethod
+    def _check_mode(value: Value) -> None:
+        assert isinstance(value, int)
+        if value & ~(REVERSED | SCALING):
+            raise Abort(AbortCode.BAD_VALUE)
 
     def _check_per_turn(self, value: Value) -> None:
         assert isinstance(value, int)

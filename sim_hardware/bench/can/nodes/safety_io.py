@@ -16,7 +16,7 @@ from sim_hardware.bench.signals import RigSignals
 OPEN, RENEW, CLOSE = 0, 1, 2
 RELAY, ESTOP_OK, DOORS_OK, DRIVE_ENABLED = 1, 2, 4, 8
 _HALF = 128
-_WATCH_MS = 1
+_WATCH_MS = 2
 
 
 def rises(counter: int, last: int | None) -> bool:
@@ -132,7 +132,7 @@ class SafetyIo(Device):
         self._signals.set(relay_closed=closed)
 
     def _look(self, now_ns: int) -> None:
-        """Every millisecond: the time since the last rising counter, the chain, and news to tell."""
+        """Every 2 ms: the time since the last rising counter, the chain, and news to tell."""
         commands = self._signals.commands()
         if self._coil:
             late = now_ns - self._renewed_ns > self._settings.relay_timeout_ms * NS_PER_MS
