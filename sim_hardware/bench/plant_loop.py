@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from queue import SimpleQueue
 
 from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED, TORQUE
 from rigctl.core.errors import RigctlError
@@ -74,6 +75,7 @@ class PlantLoop:
         self._sound, self._failed = sound, failed
         self._counts = LoopCounts()
         self._turns = 0  # whole turns of the shaft so far
+        self._posted: SimpleQueue[Callable[[Plant], None]] = SimpleQueue()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="plant", daemon=True)
 
@@ -87,6 +89,10 @@ class PlantLoop:
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join()
 
+    def post(self, action: Callable[[Plant], None]) -> None:
+        """Do something to the plant before its next step, in the thread of the loop."""
+        self._posted.put(action)
+
     def counts(self) -> dict[str, float]:
         """Time keeping so far, and the largest lateness since the last call."""
         found = asdict(self._counts)
@@ -95,6 +101,8 @@ class PlantLoop:
 
     def step(self, end_ns: int) -> None:
         """One step of the rig, which ends at this time."""
+        while not self._posted.empty():
+            self._posted.get()(self._plant)
         given = self._signals.commands()
         wanted = Commands(
             speed_set_rpm=given.speed_set_rpm,
