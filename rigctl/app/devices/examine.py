@@ -1,8 +1,8 @@
 """One device of a rig file by itself: make it, open it, let it tell, close it; every failure is a finding.
 
 Job: `examine` for `devices test`, and what `devices monitor` shares with it (`RigFile`, `ask`). Nothing that
-one device does wrong, not even a fault in its code, reaches the others. Not its job: printing; safe set-points
-(a device is in its safe state after `open`, that is the contract of `rigctl.hal.devices`).
+one device does wrong, not even a fault in its code, reaches the others. Not its job: printing; safe
+set-points (a device is in its safe state after `open`, that is the contract of `rigctl.hal.devices`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from rigctl.app.compose import read_rig, registry
+from rigctl.app import compose
 from rigctl.app.devices.fallback import diagnose_plain
 from rigctl.config.rig import DeviceConfig, RigConfig
 from rigctl.core.errors import ConfigError, RigctlError
@@ -65,18 +65,22 @@ class DeviceReport:
     timing: Timing | None = None
 
 
+def _kinds() -> Registry:
+    return compose.registry()
+
+
 @dataclass(frozen=True, slots=True)
 class RigFile:
     """A rig file that has been read, with the kinds of devices."""
 
     path: Path
     config: RigConfig
-    kinds: Registry = field(default_factory=registry)
+    kinds: Registry = field(default_factory=_kinds)
 
     @classmethod
     def read(cls, path: Path) -> RigFile:
         """Raises `ConfigError` for a file that is wrong as a whole."""
-        return cls(path, read_rig(path))
+        return cls(path, compose.read_rig(path))
 
     def device(self, role: str) -> DeviceConfig:
         """The device of a role."""
