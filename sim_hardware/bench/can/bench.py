@@ -287,7 +287,7 @@ class BenchCan:
             )
         try:
             self.call(lambda: action(**faults))
-        except TypeError as error:
+        except (TypeError, ValueError) as error:
             raise ConfigError(
                 f"{error}.",
                 place=f"bench: can: {name}",

@@ -103,6 +103,16 @@ class Injection(NamedTuple):
     after: tuple[tuple[Frame, int], ...]
 
 
+class _Held(NamedTuple):
+    """A frame that waits for another one to overtake it."""
+
+    frame: Frame
+    node: int
+    direction: str
+    deliver: Deliver
+    timer: Timer
+
+
 class _Active:
     """A rule in force: its own random numbers, how often it has matched and acted."""
 
@@ -112,13 +122,20 @@ class _Active:
         self.ends_ns = None if rule.duration_ms is None else now_ns + rule.duration_ms * NS_PER_MS
         self.matched = 0
         self.acted = 0
-        self.held: tuple[Frame, Deliver, Timer] | None = None
+        self.held: _Held | None = None
         self.timer: Timer | None = None
 
     def over(self, now_ns: int) -> bool:
         if self.ends_ns is not None and now_ns >= self.ends_ns:
             return True
         return self.rule.count is not None and self.acted >= self.rule.count
+
+    def overtaken(self, node: int, direction: str, frame: Frame) -> bool:
+        """Whether this frame is the one that the held frame waits for."""
+        held = self.held
+        if held is None or (held.node, held.direction) != (node, direction):
+            return False
+        return self.rule.cob_id is None or frame.cob_id == held.frame.cob_id
 
     def hits(self, node: int, direction: str, frame: Frame) -> bool:
         """Whether the rule acts on this frame."""
@@ -204,16 +221,16 @@ class FrameFaults:
         """Bring a frame from or to a node, as the rules want it."""
         now_ns = self._scheduler.now_ns
         frames: list[tuple[Frame, int]] = [(frame, 0)]
-        releases: list[tuple[Frame, Deliver, Timer]] = []
+        overtaken: list[_Held] = []
         for active in tuple(self._active):
             if active.held is not None:
-                if self._concerns(active, node, direction):
-                    releases.append(active.held)
+                if active.overtaken(node, direction, frame):
+                    overtaken.append(active.held)
                     active.held = None
             elif active.over(now_ns):
                 self._end(active)
-            elif active.hits(node, direction, frame):
-                frames = self._act(active, frames, deliver)
+            elif frames and active.hits(node, direction, frame):
+                frames = self._act(active, node, direction, frames, deliver)
                 active.acted += 1
                 self.log.append(
                     Injection(now_ns, active.number, active.rule.kind, node, direction, frame, tuple(frames))
@@ -223,17 +240,19 @@ class FrameFaults:
                 self._scheduler.after(delay_ns, lambda _due, part=part: deliver(part))
             else:
                 deliver(part)
-        for held, deliver_held, timer in releases:
-            timer.cancel()
-            deliver_held(held)
-
-    def _concerns(self, active: _Active, node: int, direction: str) -> bool:
-        rule = active.rule
-        return rule.node in (None, node) and rule.direction in ("both", direction)
+        for held in overtaken:
+            held.timer.cancel()
+            held.deliver(held.frame)
 
     def _act(
-        self, active: _Active, frames: list[tuple[Frame, int]], deliver: Deliver
+        self,
+        active: _Active,
+        node: int,
+        direction: str,
+        frames: list[tuple[Frame, int]],
+        deliver: Deliver,
     ) -> list[tuple[Frame, int]]:
+        """What becomes of the frames that have come so far."""
         rule = active.rule
         wait_ns = rule.delay_ms * NS_PER_MS
         if rule.kind in ("drop", "mute"):
@@ -246,16 +265,16 @@ class FrameFaults:
             return frames + [(frame, delay_ns + wait_ns) for frame, delay_ns in frames]
         if rule.kind == "reorder" and frames:
             timer = self._scheduler.after(wait_ns, lambda _due: self._release(active))
-            active.held = (frames[0][0], deliver, timer)
+            active.held = _Held(frames[0][0], node, direction, deliver, timer)
             return frames[1:]
         return frames
 
     def _release(self, active: _Active) -> None:
         """Nothing has overtaken the frame in time."""
         if active.held is not None:
-            (frame, deliver, timer), active.held = active.held, None
-            timer.cancel()
-            deliver(frame)
+            held, active.held = active.held, None
+            held.timer.cancel()
+            held.deliver(held.frame)
 
     def _end(self, active: _Active) -> None:
         if active in self._active:

@@ -95,6 +95,8 @@ class Amplifier(Device):
 
     def disturb(self, *, channel: int, broken: bool) -> None:
         """Break the bridge of a channel (1 torque, 2 pressure), or mend it."""
+        if channel not in (1, 2):
+            raise ValueError(f"there is no channel {channel}, only 1 (torque) and 2 (pressure)")
         found = self._channels[channel - 1]
         found.broken = broken
         if broken:
@@ -123,8 +125,3 @@ class Amplifier(Device):
     def _rescale(self) -> None:
         for channel, digits in zip(self._channels, self._digits, strict=True):
             channel.factor = 10.0 ** digits.number()
-
-
-def is_value(value: Value) -> bool:
-    """Whether a process value is a measured one."""
-    return value not in (INVALID_VALUE, (1 << 31) - 1)

@@ -84,6 +84,8 @@ class CurrentInput(Device):
 
     def disturb(self, *, wire: Wire) -> None:
         """Break or short the wire, let the transmitter report failure, or mend it ("ok")."""
+        if wire not in WIRES:
+            raise ValueError(f"a wire cannot be {wire!r}, only {', '.join(WIRES)}")
         self.wire = wire
 
     def _measure(self, due_ns: int) -> int:
