@@ -123,5 +123,5 @@ def ask(folder: Path, request: dict[str, Any], timeout_s: float = 0.5) -> dict[s
     if answer is None:
         raise DeviceError(f"no answer within {ANSWER_TIMEOUT_S:g} s.", place="bench")
     if answer.pop("m", None) != "done":
-        raise DeviceError(str(answer.get("reason", "refused")), place="bench")
+        raise DeviceError(str(answer.get("reason", "the bench refuses")))
     return answer

@@ -35,6 +35,8 @@ from sim_hardware.bench.can import BenchCan
 from sim_hardware.bench.commands import CommandServer
 from sim_hardware.bench.microphone import Microphone
 from sim_hardware.bench.plant_loop import PlantLoop
+from sim_hardware.bench.serial.bench import make_ports
+from sim_hardware.bench.serial.ports import SerialPort
 from sim_hardware.bench.settings import BenchSettings, load_bench
 from sim_hardware.bench.signals import OUTPUTS, RigSignals
 from sim_hardware.brake_model import load_brake
@@ -77,6 +79,7 @@ class Bench:
         self._parts = ExitStack()
         self._loop: PlantLoop | None = None
         self._can: BenchCan | None = None
+        self._ports: dict[str, SerialPort] = {}
         self._microphone: Microphone | None = None
         self._sound_environment: dict[str, str] = {}
         self._failure: BaseException | None = None
@@ -118,6 +121,10 @@ class Bench:
                 if part is not None:
                     self._parts.callback(part.stop)
                     part.start()
+            self._ports = make_ports(self.settings.serial, self.signals, self.folder, seed=self.seed)
+            for port in self._ports.values():
+                self._parts.callback(port.close)
+                port.start()
             commands = CommandServer(self.folder, self.command)
             self._parts.callback(commands.stop)
             commands.start()
@@ -147,6 +154,11 @@ class Bench:
             ) from self._failure
         if self._can is not None:
             self._can.check()
+        for name, port in self._ports.items():
+            if port.failure is not None:
+                raise DeviceError(
+                    f"has failed: {port.failure}.", place=f"bench: {name}", remedy="Start the bench anew."
+                ) from port.failure
 
     # -- parts ----------------------------------------------------------------------------------
 
@@ -230,6 +242,7 @@ class Bench:
             }  # fmt: skip
         return {
             "name": s.name, "pid": os.getpid(), "seed": self.seed, "folder": str(self.folder),
+            "ports": {name: port.address for name, port in self._ports.items()},
             "bus": s.bus.arguments, "microphone": microphone, "notes": self.notes,
         }  # fmt: skip
 
@@ -244,6 +257,7 @@ class Bench:
             "outputs": values,
             "plant": self._loop.counts() if self._loop is not None else {},
             "can": self._can.command({"do": "status"}) if self._can is not None else {},
+            "serial": {name: _port_status(port) for name, port in self._ports.items()},
             "sound": self._microphone.status() if self._microphone is not None else {},
         }
 
@@ -263,12 +277,22 @@ class Bench:
             return self._command_rig(fields)
         if target == "can" and self._can is not None:
             return self._can.command(fields)
+        if target in self._ports:
+            return self._command_port(target, fields)
         raise ConfigError(
             f"{request!r} is no command.",
             place="bench",
             value=target,
-            remedy="Targets are bench (do = status), rig, can.",
+            remedy=f"Targets are {', '.join(('bench (do = status)', 'rig', 'can', *self._ports))}.",
         )
+
+    def _command_port(self, name: str, fields: dict[str, Any]) -> dict[str, Any]:
+        try:
+            return self._ports[name].command(fields)
+        except KeyError as error:
+            raise ConfigError(
+                f"the command lacks the field {error}.", place=f"bench: {name}", value=fields
+            ) from error
 
     def _command_rig(self, fields: dict[str, Any]) -> dict[str, Any]:
         """The hard-wired chain, and the condition of the brake."""
@@ -326,6 +350,13 @@ def _truth(value: object, name: str) -> bool:
     if not isinstance(value, bool):
         raise ConfigError(f"{value!r} is neither true nor false.", place=f"bench: rig: {name}", value=value)
     return value
+
+
+def _port_status(port: SerialPort) -> dict[str, Any]:
+    """Counts and faults of a port; a pulled plug shows as the missing link of a pty."""
+    is_file = not port.address.startswith("socket://")
+    plugged = not is_file or os.path.lexists(port.address)
+    return {**port.command({"do": "counts"}), **port.command({"do": "faults"}), "plugged": plugged}
 
 
 @contextlib.contextmanager

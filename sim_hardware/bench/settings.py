@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from rigctl.config.loading import load_model
 from sim_hardware.bench.can.settings import BenchCanSettings
+from sim_hardware.bench.serial.bench import SerialSettings
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,31}$")]
 
@@ -78,6 +79,7 @@ class BenchSettings(_Frozen):
     folder: Path | None = None
     bus: BusSettings = BusSettings()
     can: BenchCanSettings = BenchCanSettings()
+    serial: SerialSettings = SerialSettings()
     microphone: MicrophoneSettings = MicrophoneSettings()
 
 
