@@ -28,6 +28,9 @@ class SafetySample:
         Read-back of the torque enable.
     estop_ok, doors_ok : bool
         State of the hard-wired chain.
+    channel_fault : str
+        What is wrong with the channel itself (silent bus or node, restart, second sender); empty when well. What
+        is not known then reads False.
     """
 
     k: int
@@ -41,6 +44,7 @@ class SafetySample:
     drive_enabled: bool
     estop_ok: bool
     doors_ok: bool
+    channel_fault: str = ""
 
 
 class SafetyLink(Protocol):

@@ -3,18 +3,24 @@
 Job: answer the watchdog's challenge once per block, only after the loop has passed all its checkpoints;
 tell the engine when the watchdog is armed, has tripped, or is gone. Not its job: limits and decisions.
 
-Decisions use the watchdog's answer to earlier blocks only, so that a run in virtual time does not depend on
-which of the two processes was quicker.
+In virtual time decisions use the watchdog's answer to earlier blocks only, so that a run does not depend on
+which of the two processes was quicker. In real time the two count by clocks of their own: every answer is
+taken as soon as it is there, and a watchdog that has fallen silent is found by the age of its newest answer.
 """
 
 from __future__ import annotations
 
+import time
 import zlib
+from collections.abc import Callable
 from enum import IntFlag
-from typing import Any
+from typing import Any, Final
 
 from rigctl.core.errors import LinkClosed, SafetyTrip
 from rigctl.core.wire import Link, Message
+
+SILENCE_S: Final = 0.5
+"""Real time: older than this the watchdog's newest answer means that it hangs (it answers every 50 ms)."""
 
 
 class Checkpoint(IntFlag):
@@ -35,11 +41,25 @@ class Guard:
         Connected to the watchdog's socket.
     limits_hash8 : str
         First eight characters of the hash of the limits that the controller believes are in force.
+    lockstep : bool
+        True in virtual time: the numbers of blocks and of the watchdog's samples are the same.
+    clock_s : callable
+        Monotonic clock, s.
     """
 
-    def __init__(self, link: Link, limits_hash8: str) -> None:
+    def __init__(
+        self,
+        link: Link,
+        limits_hash8: str,
+        *,
+        lockstep: bool = True,
+        clock_s: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._link = link
         self._hash8 = limits_hash8
+        self._lockstep = lockstep
+        self._clock_s = clock_s
+        self._heard_at_s = clock_s()
         self._newer: list[Message] = []
         self._mask = Checkpoint(0)
         self._nonce = 0
@@ -68,23 +88,39 @@ class Guard:
         self._mask |= checkpoint
 
     def update(self, k: int) -> None:
-        """Read the watchdog's answers to blocks before `k`.
+        """Read the watchdog's answers: in virtual time those to blocks before `k`, in real time all.
 
         Raises
         ------
         SafetyTrip
-            The watchdog has tripped (names the first cause and the remedy), or its process has gone.
+            The watchdog has tripped (names the first cause and the remedy), its process has gone, or, armed
+            in real time, it has been silent for `SILENCE_S`.
         """
         try:
             messages = self._newer + self._link.drain()
         except LinkClosed as error:
             raise _gone() from error
-        self._newer = [message for message in messages if message.get("k", -1) >= k]
+        if self._lockstep:
+            self._newer = [message for message in messages if message.get("k", -1) >= k]
         for message in messages:
-            if message.get("k", -1) < k:
+            if not self._lockstep or message.get("k", -1) < k:
                 self._take(message)
         if self.state == "tripped":
             raise SafetyTrip(self.cause or "tripped", place="watchdog", remedy=self.remedy or "")
+        if not self._lockstep:
+            self._watch_silence(heard=bool(messages))
+
+    def _watch_silence(self, *, heard: bool) -> None:
+        now_s = self._clock_s()
+        if heard:
+            self._heard_at_s = now_s
+        elif self.state == "armed" and now_s - self._heard_at_s > SILENCE_S:
+            raise SafetyTrip(
+                f"the watchdog has been silent for {now_s - self._heard_at_s:.1f} s; "
+                "the safety relay opens by itself.",
+                place="watchdog",
+                remedy="See logs/watchdog.log and the load of the machine, then run `rigctl resume`.",
+            )
 
     def _take(self, message: Message) -> None:
         if message.get("m") == "status":

@@ -119,6 +119,7 @@ CAUSES: Final[dict[str, CauseText]] = {
         "K-20", "the drive says it is enabled while the safety relay is open",
         "Switch the drive off at its main switch. Its torque-off input does not work.",
     ),
+    "safety_channel": CauseText("C1", "the safety channel is at fault", _INSPECT),
     "estop": CauseText("S13", "the emergency stop is pressed", "Release it at the rig; then reset."),
     "doors": CauseText("S13", "a door is open", "Close it; then reset."),
     # controller

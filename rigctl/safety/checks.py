@@ -194,6 +194,11 @@ def drive_enabled(view: View, _before: View | None, _limits: Limits) -> Flags:
     return BAD if sample.drive_enabled and not view.relay_wanted and not sample.relay_closed else None
 
 
+def safety_channel(view: View, _before: View | None, _limits: Limits) -> Flags:
+    """C1, C3, C4, C11: bus or safety I/O silent or restarted, or somebody else renews the relay."""
+    return BAD if view.sample.channel_fault else None
+
+
 def estop(view: View, _before: View | None, _limits: Limits) -> Flags:
     """S13."""
     return None if view.sample.estop_ok is True else BAD
@@ -229,6 +234,7 @@ def _highest_power(view: View) -> float:
 CHECKS: Final[tuple[Check, ...]] = (
     Check("samples_gap", samples_gap, 1, per_block=True, value=attrgetter("sample.k")),
     Check("samples_clock", samples_clock, 1, per_block=True, value=attrgetter("sample.dt_s")),
+    Check("safety_channel", safety_channel, 1, per_block=True, value=attrgetter("sample.channel_fault")),
     *_for_each_signal("stale", stale, "freshness.stale_blocks", "count", per_block=True),
     *_for_each_signal("invalid", invalid, "sanity.invalid_readings", "invalid", per_block=False),
     *_for_each_signal("frozen", frozen, 1, "run", per_block=True),

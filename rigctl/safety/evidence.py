@@ -37,6 +37,7 @@ def samples_mapping(samples: tuple[SafetySample, ...], until_s: float | None) ->
         "temperature_degc": [[plain_json(v) for v in s.temperature_degc] for s in kept],
         "relay_closed": [s.relay_closed for s in kept],
         "drive_enabled": [s.drive_enabled for s in kept],
+        **({"channel_fault": faults} if any(faults := [s.channel_fault for s in kept]) else {}),
     }
 
 

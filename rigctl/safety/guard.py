@@ -23,7 +23,7 @@ from rigctl.safety.limits import Fingerprint, LoadedLimits, Windows
 from rigctl.safety.observe import View
 from rigctl.safety.proof import failed_checks
 
-ACCEPTED_LAG: Final = 4  # blocks by which the controller may be behind in real time
+ACCEPTED_LAG: Final = 4  # nonces by which the controller may be behind in real time
 TAPE_BLOCKS: Final = 40  # 2 s of the shortest blocks
 WATCHING_EVERY_S: Final = 300.0  # rig time between records that say all is well
 
@@ -67,7 +67,9 @@ class Guard:
     windows : Windows
         Wall-clock time-outs that hold in this run.
     lockstep : bool
-        Virtual time: the heartbeat of block k−1 belongs to sample k. Else only its age counts.
+        Virtual time: the heartbeat of block k−1 belongs to sample k. In real time the controller counts its
+        blocks and the safety channel its samples by clocks of their own: a heartbeat is judged by its age,
+        its own rising number and the nonce that it answers, one of the newest `ACCEPTED_LAG`.
     nonce : callable
         Gives an unpredictable 32-bit number.
     resets : ResetBook
@@ -100,6 +102,7 @@ class Guard:
         self._view: View | None = None
         self._verdicts: list[Verdict] = []
         self._sample_at_s = self._heartbeat_at_s = 0.0
+        self._samples_since_beat = 0
         self._good_samples = 0
         self._rest_since_s: float | None = None
         self._arm_after_k: int | None = None
@@ -180,6 +183,7 @@ class Guard:
     def on_heartbeat(self, message: Mapping[str, Any], now_s: float) -> None:
         """Judge one heartbeat; a wrong one trips while the relay is closed."""
         self._heartbeat_at_s = now_s
+        self._samples_since_beat = 0
         self._setpoints = message.get("set")
         fault = self.monitor.judge(message)
         if fault is None and self._latch.state is State.ARMING and not self.monitor.standing_still:
@@ -270,7 +274,9 @@ class Guard:
         if self.live:
             for cause_id, limit_s in self._silence_limits():
                 if now_s >= limit_s:
-                    self.trip(Cause(cause_id, detail=f"last block {self.last_k}"), now_s)
+                    beat = cause_id == "heartbeat_late" and not self._lockstep
+                    last_k = self.monitor.last_k if beat else self.last_k
+                    self.trip(Cause(cause_id, detail=f"last block {last_k}"), now_s)
 
     def trip(self, cause: Cause, now_s: float) -> None:
         """Open the relay and stay tripped. The first cause is kept, further ones are noted."""
@@ -301,8 +307,10 @@ class Guard:
     def on_sample(self, sample: SafetySample, now_s: float) -> Answer:
         """One cycle. The answer belongs to this sample; with OPEN, `take_open` gives the reason."""
         before = self._view
+        gap_s = now_s - self._sample_at_s
         view = self._view = View(sample, before, self._latch.relay_wanted)
         self._sample_at_s = now_s
+        self._samples_since_beat += 1
         self._tape.append(sample)
         verdicts = self._verdicts = self._runner.run(view, before)
         passed = JOURNAL_WELL if not self._journal_failure else 0
@@ -323,7 +331,10 @@ class Guard:
         if self._heartbeat_is_current(sample.k, now_s):
             passed |= HEARTBEAT_CURRENT
         elif self.live:
-            self.trip(Cause("heartbeat_late", detail=f"block {sample.k - 1}"), now_s)
+            self.trip(Cause("heartbeat_late", detail=self._lateness(sample.k, now_s)), now_s)
+        if not self._lockstep and self.live and gap_s > self._windows.sample_s:
+            # This process itself was stopped or starved: what it has missed cannot be made up for.
+            self.trip(Cause("samples_late", detail=f"{gap_s:.3f} s before sample {sample.k}"), now_s)
         self._watch_rest(view)
         return self._conclude(view, passed, now_s)
 
@@ -345,10 +356,16 @@ class Guard:
         return Answer.EDGE
 
     def _heartbeat_is_current(self, k: int, now_s: float) -> bool:
-        lag = 1 if self._lockstep else ACCEPTED_LAG
-        if not k - lag <= self.monitor.last_k <= k:
-            return False
-        return self._lockstep or now_s - self._heartbeat_at_s <= self._windows.heartbeat_s
+        if self._lockstep:
+            return k - 1 <= self.monitor.last_k <= k
+        # By the clock, and by the samples since: no clock is trusted alone.
+        recent = self.monitor.seen > 0 and self._samples_since_beat <= ACCEPTED_LAG
+        return recent and now_s - self._heartbeat_at_s <= self._windows.heartbeat_s
+
+    def _lateness(self, k: int, now_s: float) -> str:
+        if self._lockstep:
+            return f"block {k - 1}"
+        return f"{now_s - self._heartbeat_at_s:.3f} s since block {self.monitor.last_k} of the controller"
 
     def _silence_limits(self) -> list[tuple[str, float]]:
         """(cause, clock time at which it holds)."""

@@ -59,12 +59,13 @@ class HeartbeatMonitor:
     limits : SetpointLimits
     accepted_nonces : int
         How many of the newest nonces may be answered: in lockstep two, because the status of block k and the
-        controller's heartbeat k cross on the way.
+        controller's heartbeat k cross on the way; in real time more, because the controller's blocks run by
+        another clock than the statuses.
 
     Attributes
     ----------
     last_k : int
-        Block of the newest heartbeat; -1 before the first.
+        Block of the newest heartbeat, as the controller counts; -1 before the first.
     good_in_a_row : int
     fault : Cause or None
         What was wrong with the newest heartbeat.

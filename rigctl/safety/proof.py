@@ -78,6 +78,7 @@ def _approach(sample: SafetySample, limits: Limits) -> SafetySample:
 
 FAULTS: Final[dict[str, Maker]] = {
     "samples_gap": lambda sample, _limits: replace(sample, k=sample.k + 5, t_s=sample.t_s),
+    "safety_channel": _set(channel_fault="made up by the proof test"),
     "samples_clock": lambda sample, _limits: replace(sample, t_s=sample.t_s + 0.05),
     **{f"{name}_stale": _set(**{field: ()}) for name, field in _FIELDS.items()},
     **{f"{name}_invalid": _all(field, lambda _limits: nan) for name, field in _FIELDS.items()},
