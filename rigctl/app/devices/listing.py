@@ -22,6 +22,9 @@ from rigctl.config.rig import ROLES
 from rigctl.core.errors import RigctlError
 from rigctl.core.registry import Registry
 
+SOURCE = "source"
+"""Signal sources of the live acquisition (`drivers.daq.source`) are registered like roles."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:
@@ -96,9 +99,9 @@ def collect(*, network: bool = False) -> list[Part]:
 
 
 def known_kinds(table: Registry) -> list[Kind]:
-    """All kinds for all roles, each tried by importing it."""
+    """All kinds for all roles and for sources of the acquisition, each tried by importing it."""
     kinds: list[Kind] = []
-    for role in ROLES:
+    for role in (*ROLES, SOURCE):
         for kind in table.kinds(role):
             target = origin = problem = ""
             try:
