@@ -1,7 +1,8 @@
 """Emulated CANopen devices of the bench, made of raw frames after the CiA standards.
 
-`BenchCan(bus, signals, settings)` with `start()` and `stop()` is all that the bench needs; the devices' manual is
-README.md beside this file. NOT its job: the plant, opening buses, drivers (they know nothing of this package).
+`BenchCan(bus, signals, settings)` with `start()` and `stop()` is all that the bench needs; the devices'
+manual is README.md beside this file. NOT its job: the plant, opening buses, drivers (they know nothing of
+this package).
 """
 
 from sim_hardware.bench.can.bench import BenchCan

@@ -1,7 +1,7 @@
 """The bench's CAN side: all emulated nodes on one bus, served by one thread.
 
-Job: `BenchCan` brings frames between bus and nodes (through the fault seam), keeps their timers on real time, and
-obeys commands from outside. Not its job: opening the bus, the plant, the socket that commands come from.
+Job: `BenchCan` brings frames between bus and nodes (through the fault seam), keeps their timers on real time,
+and obeys commands from outside. Not its job: opening the bus, the plant, the socket that commands come from.
 """
 
 from __future__ import annotations
@@ -278,7 +278,7 @@ class BenchCan:
         self.call(self.faults.clear)
 
     def disturb(self, name: str, **faults: Any) -> None:
-        """A fault inside a device, e.g. ``disturb("current_input", wire="broken")``; see the devices' `disturb`."""
+        """A fault inside a device, e.g. ``disturb("current_input", wire="broken")``; see `disturb` there."""
         device = self.devices[self._known(name)]
         action = getattr(device, "disturb", None)
         if action is None:
@@ -304,8 +304,9 @@ class BenchCan:
         """A command as a JSON object, for the bench's command socket.
 
         ``{"do": "fault", "kind": "drop", "node": 32, …}`` (fields of `FaultRule`) gives ``{"id": n}``;
-        ``{"do": "remove", "id": n}``; ``{"do": "clear"}``; ``{"do": "disturb", "node": "amplifier", "channel": 1,
-        "broken": true}``; ``{"do": "power", "node": "regulator", "on": false}``; ``{"do": "status"}``.
+        ``{"do": "remove", "id": n}``; ``{"do": "clear"}``; ``{"do": "disturb", "node": "amplifier",
+        "channel": 1, "broken": true}``; ``{"do": "power", "node": "regulator", "on": false}``; ``{"do":
+        "status"}``.
 
         Raises
         ------

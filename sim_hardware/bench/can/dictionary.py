@@ -82,8 +82,8 @@ class Entry:
     """
 
     __slots__ = (
-        "access", "check", "default", "getter", "high", "index", "kind", "low", "mappable", "max_bytes", "name", "sub",
-        "value", "written",
+        "access", "check", "default", "getter", "high", "index", "kind", "low", "mappable", "max_bytes",
+        "name", "sub", "value", "written",
     )  # fmt: skip
 
     def __init__(

@@ -1,8 +1,8 @@
 """Fault seam between the nodes and the bus, at frame level, repeatable by seed.
 
-Job: lose, change, delay, double and swap frames by rules; let a node fall silent, babble or lose power. Not its
-job: faults inside devices (their `disturb`), and the CRC of real CAN: a corrupted frame here stands for one
-that a gateway or a node's memory has changed.
+Job: lose, change, delay, double and swap frames by rules; let a node fall silent, babble or lose power. Not
+its job: faults inside devices (their `disturb`), and the CRC of real CAN: a corrupted frame here stands for
+one that a gateway or a node's memory has changed.
 """
 
 from __future__ import annotations
@@ -46,10 +46,11 @@ class FaultRule(BaseModel):
     duration_ms : int or None
         Ends after this time.
     delay_ms : int
-        delay: by so much; duplicate: the second frame comes so much later; reorder: the longest wait for the frame
-        that overtakes.
+        delay: by so much; duplicate: the second frame comes so much later; reorder: the longest wait for the
+        frame that overtakes.
     corrupt : str
-        "bits" flips `bits` random bits, "shorten" cuts the last byte, "lengthen" adds one, "random" replaces all.
+        "bits" flips `bits` random bits, "shorten" cuts the last byte, "lengthen" adds one, "random"
+        replaces all.
     rate_hz : float
         Of babble.
     data : str or None

@@ -1,8 +1,8 @@
 """Keep a node's own frames from coming back to it on python-can's `udp_multicast` bus.
 
-Job: mark what we send, and let the kernel drop what bears the mark before it costs anything (a socket filter of
-six instructions). A real CAN controller does not hear itself either. Not its job: other buses, where this does
-nothing; and correctness: without the filter the nodes sort their own frames out by identifier.
+Job: mark what we send, and let the kernel drop what bears the mark before it costs anything (a socket filter
+of six instructions). A real CAN controller does not hear itself either. Not its job: other buses, where this
+does nothing; and correctness: without the filter the nodes sort their own frames out by identifier.
 
 The mark stands in the time stamp, which every receiver of `udp_multicast` replaces by its own.
 """

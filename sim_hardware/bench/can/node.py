@@ -1,4 +1,4 @@
-"""A CANopen node after CiA 301: NMT states, boot-up, heartbeat, SDO server, PDOs and emergencies of one device.
+"""A CANopen node after CiA 301: NMT states, boot-up, heartbeat, SDO server, PDOs, emergencies.
 
 Job: the communication part, made of raw frames. Not its job: what the device does (`Device`), the bus, time
 (`scheduler`), faults of the wire (`faults`).
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable
+from typing import Any
 
 from sim_hardware.bench.can import emergency
 from sim_hardware.bench.can.datatypes import DataType, Value
@@ -151,10 +152,10 @@ class Node:
         kind: DataType,
         access: Access,
         default: Value = 0,
-        **more: object,
+        **more: Any,
     ) -> Entry:
         """Add an object of the device; see `Entry`."""
-        return self.dictionary.add(Entry(index, sub, name, kind, access, default, **more))  # pyright: ignore[reportArgumentType]
+        return self.dictionary.add(Entry(index, sub, name, kind, access, default, **more))
 
     def add_tpdo(self, mapping: Mapping, event_ms: int) -> Tpdo:
         """The next transmit PDO, with the identifier of the pre-defined connection set."""

@@ -1,7 +1,7 @@
 """Process data objects of a node (CiA 301): mapping, event timer, inhibit time, SYNC, remote request.
 
-Job: put values of the object dictionary into frames and take them out again, when the communication parameters
-say so. Not its job: the values, and the NMT state (the node starts and stops its PDOs).
+Job: put values of the object dictionary into frames and take them out again, when the communication
+parameters say so. Not its job: the values, and the NMT state (the node starts and stops its PDOs).
 """
 
 from __future__ import annotations

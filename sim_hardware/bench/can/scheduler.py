@@ -1,7 +1,8 @@
 """Timers of all emulated nodes on one time line that somebody else advances.
 
-Job: call what is due, in order of due time, on an absolute grid (a late call does not shift the ones after it).
-Not its job: reading a clock or waiting; the bench's thread does that, and tests advance the time themselves.
+Job: call what is due, in order of due time, on an absolute grid (a late call does not shift the ones after
+it). Not its job: reading a clock or waiting; the bench's thread does that, and tests advance the time
+themselves.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """SDO server after CiA 301: expedited and segmented transfer; block transfer is refused.
 
-Job: turn request frames into answers, with the right abort codes. Not its job: frames on the bus, timing other
-than the server's own time-out of a segmented transfer (`expire`).
+Job: turn request frames into answers, with the right abort codes. Not its job: frames on the bus, timing
+other than the server's own time-out of a segmented transfer (`expire`).
 """
 
 from __future__ import annotations

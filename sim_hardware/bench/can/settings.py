@@ -171,8 +171,8 @@ class BenchCanSettings(_Model):
     Attributes
     ----------
     delay_ms : int
-        Age of the plant's samples that nodes report: at least the plant's step, so that 1 kHz PDOs always find the
-        sample of their own millisecond.
+        Age of the plant's samples that nodes report: at least the plant's step, so that 1 kHz PDOs always
+        find the sample of their own millisecond.
     """
 
     delay_ms: int = Field(default=25, ge=0, le=1000)

@@ -1,4 +1,4 @@
-"""A bench on python-can's virtual bus under a clock that the test advances, and a peer that speaks raw frames.
+"""A bench on python-can's virtual bus under a clock that the test advances, and a peer of raw frames.
 
 The peer is written from CiA 301 and the devices' manual; it imports no codec of the emulated nodes.
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 
 import pytest
@@ -44,7 +45,7 @@ def test_drop_one_identifier_and_nothing_else(bench: Bench):
 def test_skip_and_count(bench: Bench):
     bench.can.add_fault(FaultRule(kind="drop", cob_id=0x1A0, skip=3, count=2))
     values = torque(bench.of(0x1A0, bench.run(10)))
-    steps = [b - a for a, b in zip(values, values[1:], strict=False)]
+    steps = [b - a for a, b in itertools.pairwise(values)]
     assert steps == [1, 1, 3, 1, 1, 1, 1]
 
 
@@ -78,7 +79,7 @@ def test_corrupt_flips_bits_and_says_which_in_the_log(bench: Bench):
 
 @pytest.mark.parametrize(("corrupt", "size"), [("shorten", 5), ("lengthen", 7), ("random", 6)])
 def test_corrupt_lengths(bench: Bench, corrupt: str, size: int):
-    bench.can.add_fault(FaultRule(kind="corrupt", cob_id=0x1A2, corrupt=corrupt))  # pyright: ignore[reportArgumentType]
+    bench.can.add_fault(FaultRule.model_validate({"kind": "corrupt", "cob_id": 0x1A2, "corrupt": corrupt}))
     assert {len(data) for data in bench.of(0x1A2, bench.run(10))} == {size}
 
 
@@ -94,7 +95,7 @@ def test_delay_keeps_the_order(bench: Bench):
     bench.can.add_fault(FaultRule(kind="delay", cob_id=0x1A0, delay_ms=40))
     assert not bench.of(0x1A0, bench.run(39))
     values = torque(bench.of(0x1A0, bench.run(100)))
-    assert {b - a for a, b in zip(values, values[1:], strict=False)} == {1}
+    assert {b - a for a, b in itertools.pairwise(values)} == {1}
     bench.can.clear_faults()
 
 

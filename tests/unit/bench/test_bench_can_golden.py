@@ -1,7 +1,8 @@
 """Golden transcripts: boot-up, configuration and PDO exchange, frame by frame, as candump logs.
 
-`golden/can_*.log` holds what the peer sent (channel ``tester``) and what the nodes sent (channel ``bench``) on a clock
-of whole milliseconds. To write them anew after a deliberate change: run this file as a script and read the diff.
+`golden/can_*.log` holds what the peer sent (channel ``tester``) and what the nodes sent (channel ``bench``)
+on a clock of whole milliseconds. To write them anew after a deliberate change: run this file as a script and
+read the diff.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 
 import pytest
@@ -29,7 +30,7 @@ def test_every_node_boots_once_and_then_beats_pre_operational(bench: Bench):
     for node in ALL:
         beats = [frame for frame in heard if frame.cob_id == 0x700 + node]
         assert [frame.data for frame in beats] == [b"\x7f"] * 3
-        assert [b.t_ms - a.t_ms for a, b in zip(beats, beats[1:], strict=False)] == [100, 100]
+        assert [b.t_ms - a.t_ms for a, b in itertools.pairwise(beats)] == [100, 100]
     assert {frame.cob_id >> 7 for frame in heard} == {0x700 >> 7}  # no PDO before somebody says start
 
 

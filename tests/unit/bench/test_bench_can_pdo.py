@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 
 import pytest
@@ -35,7 +36,7 @@ def test_periods_and_lengths_of_the_table(bench: Bench, cob_id: int, period_ms: 
     bench.run(20)
     frames = [frame for frame in bench.run(200) if frame.cob_id == cob_id]
     assert {len(frame.data) for frame in frames} == {size}
-    steps = {b.t_ms - a.t_ms for a, b in zip(frames, frames[1:], strict=False)}
+    steps = {b.t_ms - a.t_ms for a, b in itertools.pairwise(frames)}
     assert steps == {period_ms}
 
 
@@ -60,7 +61,7 @@ def test_each_pdo_carries_the_sample_of_its_own_millisecond(bench: Bench):
         else:
             ramp += bench.of(0x1A0, bench.run(10))
     values = [struct.unpack_from("<i", data)[0] / 100 for data in ramp][40:]
-    assert {b - a for a, b in zip(values, values[1:], strict=False)} == {1.0}
+    assert {b - a for a, b in itertools.pairwise(values)} == {1.0}
 
 
 def test_event_time_may_be_changed_and_switched_off(bench: Bench):

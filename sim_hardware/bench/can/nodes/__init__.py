@@ -1,1 +1,1 @@
-"""The six devices of the bench's CAN bus, one module each; their manual is `sim_hardware/bench/can/README.md`."""
+"""The six devices of the bench's CAN bus, one module each; their manual is README.md in the folder above."""

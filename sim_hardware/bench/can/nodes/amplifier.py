@@ -1,13 +1,13 @@
 """Bridge amplifier with two channels after CiA 404: torque and line pressure.
 
-Job: scale the rig's values into integers with decimal digits, clamp at the range, mark what is not valid. Not its
-job: noise and lag of the sensors (the plant).
+Job: scale the rig's values into integers with decimal digits, clamp at the range, mark what is not valid. Not
+its job: noise and lag of the sensors (the plant).
 """
 
 from __future__ import annotations
 
 from sim_hardware.bench.can import emergency
-from sim_hardware.bench.can.datatypes import DataType, Value
+from sim_hardware.bench.can.datatypes import DataType
 from sim_hardware.bench.can.dictionary import Access
 from sim_hardware.bench.can.node import Device
 from sim_hardware.bench.can.settings import AmplifierChannel, AmplifierSettings
@@ -89,8 +89,8 @@ class Amplifier(Device):
                 self._status[position].value = status
                 self._report_overload(channel, status)
             if not status & NOT_VALID:
-                offset = self._offsets[position].value
-                value = max(INVALID_VALUE + 1, min((1 << 31) - 2, value - offset)) if offset else value  # pyright: ignore[reportOperatorIssue]
+                offset = self._offsets[position].number()
+                value = max(INVALID_VALUE + 1, min((1 << 31) - 2, value - offset))
             self._values[position].value = value
 
     def disturb(self, *, channel: int, broken: bool) -> None:

@@ -1,7 +1,7 @@
 """Current input 4..20 mA after CiA 404 with the fault limits of NAMUR NE 43; the pyrometer hangs on it.
 
-Job: temperature to current as the pyrometer's analog output makes it, current to object and status. Not its job:
-what the current means (the driver knows the pyrometer's range).
+Job: temperature to current as the pyrometer's analog output makes it, current to object and status. Not its
+job: what the current means (the driver knows the pyrometer's range).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CURRENT_FAULT = 0x2130
 # NAMUR NE 43, µA
 FAULT_LOW, VALID_LOW, VALID_HIGH, FAULT_HIGH = 3600, 3800, 20500, 21000
 FAULT_DELAY_MS = 6
-#: What the input measures when the wire is broken or shorted to its supply, or the transmitter reports failure
+#: What the input measures when the wire is broken or shorted, or the transmitter reports failure
 _CURRENTS_UA: dict[str, int] = {"broken": 0, "short": 25000, "failure_low": 3500, "failure_high": 21600}
 
 

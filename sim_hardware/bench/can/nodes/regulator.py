@@ -1,7 +1,7 @@
 """Pressure regulator: state machine of CiA 408, set-point, target window, reaction to a lost heartbeat.
 
-Job: turn control word and set-point into pressure commands of the rig, and report. Not its job: ramp and lag of
-the pressure (the plant).
+Job: turn control word and set-point into pressure commands of the rig, and report. Not its job: ramp and lag
+of the pressure (the plant).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Safety I/O: the relay that must be renewed, emergency stop, doors and read-backs.
 
-Job: the relay's rule (rising counters within the time, closing by command 2 only), inputs, read-back. Not its job:
-what the open relay does to drive and pressure (the plant), and deciding when to renew (the watchdog).
+Job: the relay's rule (rising counters within the time, closing by command 2 only), inputs, read-back. Not its
+job: what the open relay does to drive and pressure (the plant), and deciding when to renew (the watchdog).
 """
 
 from __future__ import annotations
