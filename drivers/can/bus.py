@@ -4,8 +4,9 @@ Job: validate our own keys of the table, hand all others to `can.Bus`, and trans
 into one `DeviceError` that names bus, value and remedy. Not its job: reading and dispatching frames
 (`drivers.can.session`).
 
-Keys of the table that are ours: ``interface``; ``log`` (false, true, "log", "asc", "blf"); ``controller_node``
-(our own CANopen node id, 1). Everything else goes to python-can as it is: channel, port, bitrate, hop_limit, …
+Keys of the table that are ours: ``interface``; ``log`` (false, true, "log", "asc", "blf"); and
+``controller_node`` (our own CANopen node id, 1). Everything else goes to python-can as it is: channel, port,
+bitrate, hop_limit, …
 """
 
 from __future__ import annotations
@@ -78,8 +79,8 @@ def bus_settings(buses: Mapping[str, Mapping[str, Any]], name: str, place: str) 
             "missing.", place=f"{where}.interface", remedy="Name python-can's interface: socketcan, …"
         )
     log = table.pop("log", False)
-    suffix = {True: "log", False: ""}.get(log, log) if isinstance(log, bool | str) else None
-    if suffix is None or suffix not in ("", *LOG_SUFFIXES):
+    suffix = ("log" if log else "") if isinstance(log, bool) else str(log)
+    if suffix not in ("", *LOG_SUFFIXES):
         raise ConfigError(
             f"{log!r} is no kind of log.", place=f"{where}.log", value=log,
             remedy='Give true, false, "log" (candump), "asc" or "blf".',
@@ -155,25 +156,26 @@ def _remedy(settings: BusSettings, error: BaseException) -> str:
     channel = settings.arguments.get("channel", "can0")
     bitrate = settings.arguments.get("bitrate", 1_000_000)
     number = _errno_of(error)
+    remedy = "Check adapter, cable and channel; compare with `rigctl devices list`."
     if isinstance(error, NotImplementedError) or "library not found" in str(error).lower():
-        return (
+        remedy = (
             f"Install the vendor's library for the {settings.interface} interface (see python-can's manual), "
             "or correct the interface."
         )
-    if number in (errno.EPERM, errno.EACCES):
-        return f"Permission is missing: let this user open {channel} (group dialout, or udev rule)."
-    if settings.interface == "socketcan":
-        if number in (errno.EAFNOSUPPORT, errno.EPROTONOSUPPORT):
-            return "This kernel has no CAN: load it with `modprobe can can_raw`, or use another interface."
-        return (
+    elif number in (errno.EPERM, errno.EACCES):
+        remedy = f"Permission is missing: let this user open {channel} (group dialout, or udev rule)."
+    elif settings.interface == "socketcan" and number in (errno.EAFNOSUPPORT, errno.EPROTONOSUPPORT):
+        remedy = "This kernel has no CAN: load it with `modprobe can can_raw`, or use another interface."
+    elif settings.interface == "socketcan":
+        remedy = (
             f"Bring it up: ip link set {channel} up type can bitrate {bitrate} restart-ms 100; "
             "compare with `rigctl devices list`."
         )
-    if settings.interface == "udp_multicast":
-        return (
+    elif settings.interface == "udp_multicast":
+        remedy = (
             "Check that channel is a multicast address (239.x.x.x), that there is a route to it "
             "(ip route add 239.0.0.0/8 dev lo) and that msgpack is installed."
         )
-    if isinstance(error, TypeError | ValueError):
-        return f"Correct the keys of [buses.{settings.name}]; python-can's manual lists them."
-    return "Check adapter, cable and channel; compare with `rigctl devices list`."
+    elif isinstance(error, TypeError | ValueError):
+        remedy = f"Correct the keys of [buses.{settings.name}]; python-can's manual lists them."
+    return remedy

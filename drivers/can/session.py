@@ -22,7 +22,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from drivers.can.bus import BusSettings, bus_settings, open_bus
+from drivers.can.bus import LOG_SUFFIXES, BusSettings, bus_settings, open_bus
 from drivers.can.frame_log import FrameLog
 from rigctl.core.errors import DeviceError
 from rigctl.hal.devices import RigContext
@@ -135,10 +135,12 @@ class CanSession:
         self._consecutive_errors = 0
         self._own_sent, self._own_heard = {}, {}
         self._bus = open_bus(self.settings)
-        log_dir = self._context.log_dir
+        wire_log_dir = self._context.wire_log_dir
+        log_dir = wire_log_dir or (self._context.log_dir if self.settings.log_suffix else None)
         try:
-            if self.settings.log_suffix and log_dir is not None:
-                self._log = FrameLog(log_dir / f"can-{self.name}.{self.settings.log_suffix}", self.name)
+            if log_dir is not None:
+                suffix = self.settings.log_suffix or LOG_SUFFIXES[0]
+                self._log = FrameLog(log_dir / f"can-{self.name}.{suffix}", self.name)
             self._notifier = can.Notifier(self._bus, [_Listener(self)], timeout=_READ_TIMEOUT_S)
         except BaseException:
             self._stop()

@@ -1,0 +1,1 @@
+"""Drivers of actuators of the brake line pressure."""
