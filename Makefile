@@ -2,10 +2,11 @@
 #
 #   make run     environment, installation, then the squeal matrix of the paper on the simulated rig
 #   make test    environment with the tools for development, then linters, types and all tests
+#   make figures the figures of the paper from our model, its numbers beside ours: figures/figures.html
 #   make lock    resolve the dependencies again (after a change in pyproject.toml)
 
 .DELETE_ON_ERROR:
-.PHONY: help run test system lint types lock clean
+.PHONY: help run figures test system lint types lock clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -17,6 +18,9 @@ help:
 
 run: $(VENV)/.run
 	$(BIN)/rigctl run $(PROGRAM) $(RUN_ARGS)
+
+figures: $(VENV)/.run
+	$(BIN)/rigctl model figures --out figures
 
 test: system lint types
 	$(BIN)/python -m pytest -n 2 --dist worksteal
@@ -53,4 +57,4 @@ lock: $(VENV)/.dev
 		--custom-compile-command "make lock" --group build --group dev -c requirements.lock -o requirements-dev.lock pyproject.toml
 
 clean:
-	rm -rf $(VENV) build dist .pytest_cache .hypothesis .ruff_cache
+	rm -rf $(VENV) figures build dist .pytest_cache .hypothesis .ruff_cache

@@ -5,11 +5,10 @@ NOT its job: drawing (`sensitivity_figures`), the claims that the paper draws fr
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from rigctl.model import sensitivity_figures as figures
+from rigctl.model.beside_paper import Comparison, paper_table
 from rigctl.model.output import Study
 from rigctl.model.sensitivity import STEP, positions_of, robustness_facts, robustness_of
 from rigctl.model.sensitivity_tables import (
@@ -19,28 +18,32 @@ from rigctl.model.sensitivity_tables import (
     changes_table,
     effects_table,
     modifications_table,
-    paper_table,
 )
 from sim_hardware.brake_model.design.effects import influence
 from sim_hardware.brake_model.design.variations import Mode, all_variations
 from sim_hardware.brake_model.linear import LinearModel
+
+_TITLE = "The paper's numbers and statements and ours"
 
 
 def figure_8_study(model: LinearModel) -> Study:
     """Fig. 8: eq 25 of the basic design over i = 1…28, with the paper's printed numbers beside ours."""
     found = robustness_of(model, None, 0.4, 0.6, STEP)
     pairs = bool(np.allclose(found.basic[::2], found.basic[1::2])) if found.basic.size % 2 == 0 else False
+    facts = robustness_facts(found, BELOW_HZ)
     printed = (
-        ("coefficient of friction from", 0.4, found.low),
-        ("coefficient of friction to", 0.6, found.high),
-        ("sensitivity values", 28, found.basic.size),
-        ("values equal in pairs", True, pairs),
+        Comparison("coefficient of friction from", 0.4, found.low),
+        Comparison("coefficient of friction to", 0.6, found.high),
+        Comparison("sensitivity values", 28, int(found.basic.size)),
+        Comparison("values equal in pairs", "yes", "yes" if pairs else "no", holds=pairs),
     )
     return Study(
         "figure_8",
-        "Fig. 8: sensitivity of the basic brake design to friction",
-        robustness_facts(found, BELOW_HZ),
-        (paper_table(printed), basic_table(found)),
+        f"More friction costs the mode at {facts['maximum_at_hz']:.0f} Hz most ({found.reference:.3g} 1/s "
+        f"per unit of friction: the reference); {facts['pairs_that_lose_damping']} of {facts['pairs']} modes "
+        "lose damping",
+        facts,
+        (paper_table(_TITLE, printed), basic_table(found)),
         {"bars": lambda: figures.robustness_figure(found, BELOW_HZ)},
     )
 
@@ -52,16 +55,27 @@ def figure_9_study(model: LinearModel) -> Study:
     found = robustness_of(model, None, 0.4, 0.6, STEP)
     chosen = positions_of(found)
     facts = robustness_facts(found, BELOW_HZ) | {"modifications_shown": len(chosen)}
+    largest = found.varied.max(axis=1)
+    sided = [i for i in chosen if found.variations[i].mode in ("clockwise", "counter-clockwise")]
+    even = [i for i in chosen if i not in sided]
+    worst = max(chosen, key=lambda i: float(largest[i]))
     printed = (
-        ("change of grouped parameters, %", 10, 100.0 * STEP),
-        ("design modifications shown", 10, len(chosen)),
-        ("design modifications in all, more than", 100, len(found.variations)),
+        Comparison("change of grouped parameters", 10.0, 100.0 * STEP, "%"),
+        Comparison("design modifications shown", 10, len(chosen)),
+        Comparison("design modifications in all, more than", 100, len(found.variations)),
+        Comparison(
+            "asymmetric modifications have the stronger influence",
+            "yes",
+            f"up to {largest[sided].max():.0f} 1/s asymmetric, {largest[even].max():.0f} 1/s symmetric",
+            holds=bool(largest[sided].max() > largest[even].max()),
+        ),
     )
     return Study(
         "figure_9",
-        "Fig. 9: robustness with coupling elements moved, symmetric and asymmetric",
+        f"Of the positions, most sensitive to more friction: {found.variations[worst].title} "
+        f"({largest[worst]:.0f} 1/s; basic design {found.reference:.0f} 1/s)",
         facts,
-        (paper_table(printed), modifications_table(found, BELOW_HZ)),
+        (paper_table(_TITLE, printed), modifications_table(found, BELOW_HZ)),
         {"bars": lambda: figures.positions_figure(found, chosen, BELOW_HZ)},
     )
 
@@ -81,9 +95,14 @@ def figure_10_study(model: LinearModel) -> Study:
         "broad band; bidirectional",
         "monodirectional; strongest at high frequencies",
     )
-    printed: list[tuple[str, Any, Any]] = [("change of grouped parameters, %", 10, 100.0 * STEP)]
-    printed += [("coefficient of friction", 0.4, 0.4), ("eigenvalues", 28, found.changes.shape[1])]
-    printed += [(v.title, p, c) for v, p, c in zip(chosen, paper, classes, strict=True)]
+    printed = [
+        Comparison("change of grouped parameters", 10.0, 100.0 * STEP, "%"),
+        Comparison("eigenvalues", 28, int(found.changes.shape[1])),
+    ]
+    printed += [
+        Comparison(v.title, says, ours, holds=_classes_hold(says, ours))
+        for v, says, ours in zip(chosen, paper, classes, strict=True)
+    ]
     facts = {
         f"{v.group}_{v.mode}".replace("-", "_"): {
             "classes": list(e.classes),
@@ -97,8 +116,16 @@ def figure_10_study(model: LinearModel) -> Study:
     title = "Influence of the group 'piston' on the real parts, μ = 0.4"
     return Study(
         "figure_10",
-        "Fig. 10: change of real parts by the group 'piston'",
+        "Group 'piston', sum of real parts: "
+        + ", ".join(f"{v.title} {e.total:+.1f} 1/s" for v, e in zip(chosen, found.effects, strict=True)),
         facts,
-        (paper_table(printed), effects_table(found), bands_table(found), changes_table(found)),
+        (paper_table(_TITLE, printed), effects_table(found), bands_table(found), changes_table(found)),
         {"bars": lambda: figures.influence_figure(found, (0, 1, 2), title)},
     )
+
+
+def _classes_hold(says: str, ours: str) -> bool | str:
+    """Whether the effect classes that the paper names are ours too."""
+    named = [part.strip() for part in says.split(";") if not part.strip().startswith("strongest")]
+    found = [name in ours for name in named]
+    return True if all(found) else "in part" if any(found) else False

@@ -5,7 +5,7 @@ NOT its job: the numbers (`sim_hardware.brake_model`), which tables a study has 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -118,19 +118,6 @@ def changes_table(found: Influence) -> Table:
     ]
     columns += [column(v.name, "1/s", row) for v, row in zip(found.variations, found.changes, strict=True)]
     return Table("changes", "Change of the real part of every eigenvalue", tuple(columns))
-
-
-def paper_table(rows: Sequence[tuple[str, Any, Any]]) -> Table:
-    """The paper's printed numbers beside ours, as text where they are words."""
-    return Table(
-        "paper",
-        "The paper's numbers and ours",
-        (
-            column("quantity", "", [row[0] for row in rows]),
-            column("paper", "", [str(row[1]) for row in rows]),
-            column("ours", "", [str(row[2]) for row in rows]),
-        ),
-    )
 
 
 def ranking_table(model: LinearModel, found: Sensitivities, i: int, order: Any) -> Table:

@@ -40,7 +40,7 @@ HISTORY = 6
 SOLVED, FLAGGED = 0, 1
 #: grids below this many points per interpolation point are left to LAPACK
 _WORTHWHILE = 4
-#: larger state matrices: not tried; a reduced finite-element model of 126 eigenvalues agrees with LAPACK to 1e-12
+#: larger state matrices are not tried; reduced finite-element models of 126 eigenvalues agree to 1e-12
 _LARGEST = 300
 #: more than this share flagged: LAPACK for all
 _HOPELESS = 0.6
