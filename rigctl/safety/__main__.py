@@ -36,6 +36,7 @@ from rigctl.safety.realtime import (
     quiet_garbage_collector,
     resident_mb,
 )
+from rigctl.safety.supervise import Supervision
 
 SOCKET_NAME: Final = "watchdog.sock"
 EXIT_CONFIG: Final = 2
@@ -66,15 +67,27 @@ def _options(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--safe-state-timeout", type=float, default=30.0, help="seconds for the rig to come to rest"
     )
+    parser.add_argument(
+        "--supervise",
+        action="store_true",
+        help="without a controller: show and journal what is seen; the relay stays open. Ends with Ctrl-C",
+    )
+    parser.add_argument(
+        "--for", dest="seconds", type=float, help="with --supervise: end after so many seconds"
+    )
+    parser.add_argument(
+        "--every", type=float, default=1.0, help="with --supervise: seconds between lines of values"
+    )
     return parser.parse_args(arguments)
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the watchdog; returns the exit code."""
     options = _options(arguments)
-    ignore_terminal_signals()
+    if not options.supervise:
+        ignore_terminal_signals()
     try:
-        return _watch(options)
+        return _supervise(options) if options.supervise else _watch(options)
     except ConfigError as error:
         print(f"watchdog: {error}", file=sys.stderr)
         return EXIT_CONFIG
@@ -111,6 +124,35 @@ def _watch(options: argparse.Namespace) -> int:
     finally:
         rig.close()
         listener.close()
+        evidence.flush(5.0)
+
+
+def _supervise(options: argparse.Namespace) -> int:
+    """Look only: no socket for a controller, no latch, no command that could close the relay."""
+    loaded = load_limits(options.limits)
+    settings = _link_settings(options.link_settings)
+    evidence = Evidence(options.journal)
+    lockstep = options.time == "virtual"
+    granted = NOT_ASKED if lockstep else ask_for_priority()
+    windows = _windows(loaded, lockstep, granted)
+    rig: SafetyLink = load_target(options.link, place="safety channel")(settings)
+    try:
+        rig.connect(options.connect_timeout)
+        _tell_start(evidence, options, loaded, windows, granted)
+        supervision = Supervision(loaded, evidence, rig, sample_s=windows.sample_s, every_s=options.every)
+
+        def on_signal(_number: int, _frame: Any) -> None:
+            supervision.terminate = True
+
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            signal.signal(number, on_signal)
+        quiet_garbage_collector()
+        return supervision.run(options.seconds)
+    except DeviceError as error:
+        evidence.write("no_rig", words=str(error))
+        raise
+    finally:
+        rig.close()
         evidence.flush(5.0)
 
 
@@ -198,6 +240,7 @@ def _tell_start(
         limits_name=loaded.limits.name,
         limits_file=loaded.path.name,
         time=options.time,
+        supervises_only=options.supervise,
         real_time_priority=granted.fifo,
         memory_locked=granted.memory_locked,
         priority=granted.words,
