@@ -24,6 +24,12 @@ _BUILT_IN = {
     ("ventilator", "simulated"): "sim_hardware.devices.roles:SimulatedVentilator",
     ("acquisition", "simulated"): "sim_hardware.devices.roles:SimulatedAcquisition",
     ("safety", "simulated"): "sim_hardware.devices.roles:SimulatedSafetyChannel",
+    ("drive", "modbus"): "drivers.dc_drive.modbus:ModbusDrive",
+    ("drive", "eurotherm590"): "drivers.dc_drive.eurotherm590:Eurotherm590Drive",
+    ("pressure", "canopen"): "drivers.pressure.canopen_regulator:CanopenPressureActuator",
+    ("ventilator", "canopen"): "drivers.ventilator.canopen_output:CanopenVentilator",
+    ("acquisition", "live"): "drivers.daq.acquisition:LiveAcquisition",
+    ("safety", "can"): "drivers.safety_io.can_channel:CanSafetyChannel",
 }
 
 

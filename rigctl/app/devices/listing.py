@@ -94,7 +94,7 @@ def collect(*, network: bool = False) -> list[Part]:
         _part("CAN interfaces", can),
         _part("sound devices", sound),
         _part("ports of a running bench", lambda: (hardware.bench_ports(), ())),
-        _part("kinds of devices", lambda: (known_kinds(compose.registry()), ())),
+        _part("kinds of devices", lambda: (known_kinds(_with_sources(compose.registry())), ())),
     ]
 
 
@@ -112,6 +112,14 @@ def known_kinds(table: Registry) -> list[Kind]:
                 problem = f"{error.problem} {error.remedy}".rstrip()
             kinds.append(Kind(role, kind, target, origin, problem))
     return kinds
+
+
+def _with_sources(table: Registry) -> Registry:
+    from drivers.daq.acquisition import KINDS
+
+    for kind, target in KINDS.items():
+        table.register(SOURCE, kind, target)
+    return table
 
 
 def _part(title: str, ask: Callable[[], tuple[Sequence[Any], Sequence[str]]]) -> Part:
