@@ -107,9 +107,11 @@ class Bench:
         """
         try:
             self._parts.enter_context(_held(self.folder))
-            microphone = self._start_pulse()  # before any thread: it ends with the thread that starts it
-            plant, sound = self._make_plant()
             bus = self._open_bus()
+            microphone = self._start_pulse()
+            plant, sound = self._make_plant()
+            while bus.recv(0) is not None:  # devices do not hear what was said before they had power
+                pass
             self._can = BenchCan(bus, self.signals, self.settings.can)
             if microphone is not None:
                 self._microphone = Microphone(
