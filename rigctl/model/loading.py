@@ -28,6 +28,12 @@ def read_brake(path: Path) -> Brake:
     ConfigError
         names file, key, value and remedy
     """
+    if path.suffix != ".toml" and path.exists():
+        raise ConfigError(
+            "this study needs a brake with bodies and contacts, not matrices.",
+            place=str(path),
+            remedy="Name a brake file, for example configs/brakes/model.toml.",
+        )
     with translated(path, model=BrakeSpec):
         return load_brake(path)
     raise AssertionError  # `translated` has raised

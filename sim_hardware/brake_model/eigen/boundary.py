@@ -201,7 +201,7 @@ def check_size(model: LinearModel) -> None:
     if len(model.freedoms) > LARGEST:
         raise ValueError(
             f"the model '{model.name}' has {len(model.freedoms)} degrees of freedom: all eigenvalues at many "
-            f"points are for up to {LARGEST}; study a frequency band instead"
+            f"points are for up to {LARGEST}; make a small model of it (rigctl model reduce)"
         )
 
 

@@ -2,8 +2,8 @@
 numbers.
 
 Job: `MatrixModel`, a `LinearModel`, and `part_factors`, the naming scheme below. NOT its job: files
-(`foreign`, which also says how to bring a finite-element model), checks of single matrices
-(`foreign_checks`), eigenvalues.
+(`files`, which also says how to bring a finite-element model), checks of single matrices (`checks`),
+eigenvalues.
 
 Names of matrices. A letter, then what the part is multiplied by, joined by "_":
 
