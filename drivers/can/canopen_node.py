@@ -34,8 +34,8 @@ _IDENTITY = {
     "serial": ObjectRef(0x1018, 4, "u32"),
 }
 NMT_STATES = {0: "booting", 4: "STOPPED", 5: "OPERATIONAL", 127: "PRE-OPERATIONAL"}
-_START, _STOP, _PRE_OPERATIONAL, _RESET_NODE, _RESET_COMMUNICATION = 0x01, 0x02, 0x80, 0x81, 0x82
-_WAITED_FOR = {_START: 5, _STOP: 4, _PRE_OPERATIONAL: 127}
+_START, _PRE_OPERATIONAL, _RESET_NODE = 0x01, 0x80, 0x81
+_WAITED_FOR = {_START: 5, _PRE_OPERATIONAL: 127}
 _EMCY = struct.Struct("<HB5s")
 _SDO_TIMEOUT_S = 0.2
 _SDO_ATTEMPTS = 3
@@ -329,10 +329,10 @@ class CanopenNode:
         """Whether its newest heartbeat said so."""
         return self._state == _WAITED_FOR[_START]
 
-    def reset_communication(self, timeout_s: float = 2.0) -> None:
-        """NMT reset communication, and wait for the boot-up message: everything as after power-on."""
+    def reset(self, timeout_s: float = 5.0) -> None:
+        """NMT reset node, and wait for the boot-up message: everything as after power-on."""
         boots = self._boots
-        self._command(_RESET_COMMUNICATION)
+        self._command(_RESET_NODE)
         self._wait(lambda: self._boots > boots, timeout_s, "send its boot-up message after NMT reset")
         self.emergencies = {}
 

@@ -37,11 +37,11 @@ class FrameLog:
         import can
 
         self.path = path
-        self._channel = channel
+        self._channel: str | int = channel if path.suffix == ".log" else 0  # Vector's formats number them
         self._lock = threading.Lock()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._writer = can.Logger(str(path), channel=channel)
+            self._writer = can.Logger(str(path), channel=self._channel)
         except OSError as error:
             raise DeviceError(
                 f"the wire log cannot be written: {error.strerror}.", place=str(path),

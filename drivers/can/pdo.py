@@ -202,7 +202,13 @@ def _set_pdo(node: CanopenNode, setup: PdoSetup) -> None:
         node.write(setup.communication(5, "u16"), setup.event_ms)
     node.write(setup.mapping(0), 0)
     for sub, entry in enumerate(setup.objects, 1):
-        node.write(setup.mapping(sub), entry.mapping)
+        try:
+            node.write(setup.mapping(sub), entry.mapping)
+        except DeviceError as error:
+            raise DeviceError(
+                f"cannot put {entry} into {setup.name}: {error.problem}", place=node.place,
+                remedy="Compare the object's index and type with the device's manual.",
+            ) from error  # fmt: skip
     node.write(setup.mapping(0), len(setup.objects))
     node.write(setup.communication(1, "u32"), setup.cob_id)
 

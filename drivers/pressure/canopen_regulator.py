@@ -2,8 +2,8 @@
 
 Job: open it only when it is the right device and vents by itself when we are gone; walk its state
 machine; send set-points as a PDO when they change and every 20 ms while the control loop's lease is in
-force; vent when the lease lapses or anything goes wrong. Not its job: control of the pressure (the regulator's own), limits (the
-engine), the safety relay (the watchdog).
+force; vent when the lease lapses or anything goes wrong. Not its job: control of the pressure (the
+regulator's own), limits (the engine), the safety relay (the watchdog).
 
 A CAN controller discards disturbed frames by their CRC; here, beyond that, a frame of a wrong length and an
 actual value outside of the range never become a pressure.
@@ -104,7 +104,7 @@ class CanopenPressureActuator:
         self._forget()
         node.open(self._on_node_failure)
         try:
-            node.reset_communication()
+            node.reset()
             self._identity = node.check_identity(s.profile, s.identity)
             self._changed = self._ensure_safe()
             self._ends.append(self._network.session.subscribe(self._tpdo.cob_id, self._on_report))

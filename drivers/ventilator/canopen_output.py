@@ -94,7 +94,7 @@ class CanopenVentilator:
         self._counts, self._leased = None, False
         node.open()
         try:
-            node.reset_communication()
+            node.reset()
             self._identity = node.check_identity(s.profile, s.identity)
             self._changed = self._ensure_safe()
             node.start()
