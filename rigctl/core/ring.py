@@ -28,6 +28,9 @@ from numpy.typing import NDArray
 from rigctl.core.channels import ChannelSpec
 from rigctl.core.errors import DeviceError, RecordingError
 
+RING_NAME = "ring"
+"""The ring's file within the folder of a run: written by the acquisition, attached by all readers."""
+
 _MAGIC = b"RGCRING1"
 _ALIGN = 64
 
