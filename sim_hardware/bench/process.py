@@ -35,6 +35,7 @@ from sim_hardware.bench.can import BenchCan
 from sim_hardware.bench.commands import CommandServer
 from sim_hardware.bench.microphone import Microphone
 from sim_hardware.bench.plant_loop import PlantLoop
+from sim_hardware.bench.priority import raise_priority
 from sim_hardware.bench.serial.bench import make_ports
 from sim_hardware.bench.serial.ports import SerialPort
 from sim_hardware.bench.settings import BenchSettings, load_bench
@@ -67,6 +68,8 @@ class Bench:
         Between plant and devices.
     notes : list of str
         What is not as the bench file says, for people.
+    priority : str
+        What the kernel has given: "real-time", "raised" or "normal".
     """
 
     def __init__(self, settings: BenchSettings, folder: Path | None = None, seed: int | None = None) -> None:
@@ -76,6 +79,8 @@ class Bench:
         self.seed = secrets.randbelow(2**31) if chosen is None else chosen
         self.signals = RigSignals()
         self.notes: list[str] = []
+        self.priority = "normal"
+        self._pulse_pids: list[int] = []
         self._parts = ExitStack()
         self._loop: PlantLoop | None = None
         self._can: BenchCan | None = None
@@ -130,6 +135,8 @@ class Bench:
             commands = CommandServer(self.folder, self.command)
             self._parts.callback(commands.stop)
             commands.start()
+            if self.settings.realtime:
+                self.priority = raise_priority([os.getpid(), *self._pulse_pids])
             self._started_s = time.monotonic()
             self._tell_ready()
         except BaseException:
@@ -175,6 +182,7 @@ class Bench:
         server = pulse.PulseServer(self.folder, self.settings.microphone)
         self._parts.callback(server.stop)
         server.start()
+        self._pulse_pids.append(server.pid)
         self._sound_environment = server.environment()
         return server.pipe
 
@@ -246,6 +254,7 @@ class Bench:
             "name": s.name, "pid": os.getpid(), "seed": self.seed, "folder": str(self.folder),
             "ports": {name: port.address for name, port in self._ports.items()},
             "bus": s.bus.arguments, "microphone": microphone, "notes": self.notes,
+            "priority": self.priority,
         }  # fmt: skip
 
     def status(self) -> dict[str, Any]:

@@ -126,6 +126,11 @@ class PulseServer:
             path.unlink(missing_ok=True)
 
     @property
+    def pid(self) -> int:
+        """Of the process; 0 when it has not been started."""
+        return self._process.pid if self._process is not None else 0
+
+    @property
     def running(self) -> bool:
         """It has been started and has not ended."""
         return self._process is not None and self._process.poll() is None

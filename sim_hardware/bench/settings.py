@@ -70,6 +70,8 @@ class BenchSettings(_Frozen):
         Of noise and scatter; None draws one.
     folder : Path or None
         Where ports and sockets are; None leaves it to `rigctl.hal.bench_paths`.
+    realtime : bool
+        Ask for real-time priority; without permission the bench runs as it may.
     """
 
     name: Annotated[str, Field(min_length=1, max_length=120)]
@@ -77,6 +79,7 @@ class BenchSettings(_Frozen):
     brake: Path
     seed: Annotated[int | None, Field(ge=0, le=2**31 - 1)] = None
     folder: Path | None = None
+    realtime: bool = True
     bus: BusSettings = BusSettings()
     can: BenchCanSettings = BenchCanSettings()
     serial: SerialSettings = SerialSettings()

@@ -160,9 +160,35 @@ def modbus(port: serial.Serial, request: bytes) -> bytes:
     return (answer + port.read(length - 5))[1:-2]
 
 
-def command_drive(port: serial.Serial, control: int, reference: int) -> None:
-    request = struct.pack(">BHHBHH", 0x10, 0, 2, 4, control, reference)
-    assert modbus(port, request)[0] == 0x10
+class Drive:
+    """The controller's side of the drive's line: renews control word and reference as the drive demands."""
+
+    def __init__(self, path: str) -> None:
+        self._port = serial.Serial(path, 115200, timeout=0.5)
+        self._lock, self._stop = threading.Lock(), threading.Event()
+        self._words = (0x0476, 0)
+        self._thread = threading.Thread(target=self._renew)
+        self._thread.start()
+
+    def __enter__(self) -> Drive:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        self._thread.join()
+        self._port.close()
+
+    def command(self, control: int, reference: int) -> None:
+        self._words = (control, reference)
+        assert self.ask(struct.pack(">BHHBHH", 0x10, 0, 2, 4, control, reference))[0] == 0x10
+
+    def ask(self, request: bytes) -> bytes:
+        with self._lock:
+            return modbus(self._port, request)
+
+    def _renew(self) -> None:
+        while not self._stop.wait(0.1):
+            self.command(*self._words)
 
 
 @pytest.fixture(scope="module")
@@ -199,13 +225,12 @@ def close_relay(host: Host) -> None:
 
 def test_shaft_and_pressure_react_to_raw_frames(bench: BenchProcess, host: Host) -> None:
     close_relay(host)
-    with serial.Serial(bench.ready["ports"]["drive"], 115200, timeout=0.5) as port:
-        command_drive(port, 0x0476, 0)
-        command_drive(port, 0x047F, 1200)  # 20000 is 1000 1/min
+    with Drive(bench.ready["ports"]["drive"]) as drive:
+        drive.command(0x0476, 0)
+        drive.command(0x047F, 1200)  # 20000 is 1000 1/min
         host.send(0x231, struct.pack("<h", 0))
         wait_for(lambda: abs(host.speed_rpm() - 60.0) < 1.0, "60 1/min at the encoder")
 
-        command_drive(port, 0x047F, 1200)  # again and again: the drive trips after 3 s without
         before, started = host.position(), time.monotonic()
         counts = host.counts.copy()
         time.sleep(1.0)
@@ -214,12 +239,11 @@ def test_shaft_and_pressure_react_to_raw_frames(bench: BenchProcess, host: Host)
         for cob_id, rate_hz in ((0x1A0, 1000), (0x1A2, 1000), (0x190, 100), (0x1B0, 100)):
             assert (host.counts[cob_id] - counts[cob_id]) / elapsed_s == pytest.approx(rate_hz, rel=0.15)
 
-        command_drive(port, 0x047F, 1200)
         idle_nm = host.torque_nm()
         host.send(0x210, struct.pack("<Hh", 0x0007, round(12.0 / 50.0 * 16384)))
         wait_for(lambda: abs(host.pressure_bar() - 12.0) < 1.0, "12 bar at the amplifier")
         wait_for(lambda: host.torque_nm() > idle_nm + 100.0, "torque of the brake")
-        answer = modbus(port, struct.pack(">BHH", 0x03, 4, 1))
+        answer = drive.ask(struct.pack(">BHH", 0x03, 4, 1))
         assert struct.unpack(">h", answer[2:4])[0] / 20.0 == pytest.approx(60.0, abs=2.0)
 
         host.renew = None  # nobody renews the relay: it opens, pressure and torque go
