@@ -148,6 +148,9 @@ class CanSafetyLink:
         if self._thread is not None:
             self._thread.join(1.0)
         bus, self._bus = self._bus, None
+        if self._reader is not None:
+            self._reader.close()
+            self._reader = None
         import can
 
         with contextlib.suppress(can.CanError, OSError):
