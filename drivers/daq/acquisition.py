@@ -253,7 +253,7 @@ class LiveAcquisition:
             for spec in source.channels():
                 if spec.name in seen:
                     raise ConfigError(
-                        f"the channel {spec.name!r} comes from two sources: {seen[spec.name]}, {source.name}.",
+                        f"channel {spec.name!r} comes from two sources: {seen[spec.name]}, {source.name}.",
                         place=source.place, value=spec.name, remedy="Rename it, or remove one source.",
                     )  # fmt: skip
                 seen[spec.name] = source.name
@@ -294,7 +294,7 @@ class LiveAcquisition:
             self._update(now_s)
             host_s = float(self._time.host_s(end_s)[0])
             if self._time.reached(end_ns, now_s):
-                # counted from when we have seen it: after a stall of this process, readers need their turn too
+                # counted from when we saw it: after a stall of this process, readers need their turn
                 reached_s = now_s if reached_s is None else reached_s
                 late = now_s > max(host_s, reached_s) + self._settings.lateness_s
                 if late or all(collector.covers(host_s) for collector in self._collectors):

@@ -162,7 +162,8 @@ class CurrentLoop(CanSource):
         unit = node.read(ObjectRef(0x6131, self.settings.input, "u32"))
         if digits != 0 or unit != 0xFA04_0000:
             raise DeviceError(
-                f"input {self.settings.input} does not count in uA: unit {unit:08X}h (6131h), {digits} digits (6132h).",
+                f"input {self.settings.input} does not count in uA: unit {unit:08X}h (6131h), "
+                f"{digits} digits (6132h).",
                 place=self.place, value=unit, remedy="Set unit FA040000h and 0 digits with the maker's tool.",
             )  # fmt: skip
 
@@ -344,7 +345,7 @@ class SpeedMeter:
         self._segments = 0
 
     def __call__(self, numbers: NDArray[np.int64], wrapped: Values) -> tuple[Values, Values]:
-        """(numbers at the windows' middles, speeds in 1/min) of all samples since the last call, lost ones too."""
+        """(numbers at the windows' middles, speeds in 1/min) of all samples since the last call."""
         if len(numbers) == 0:
             return np.zeros(0), np.zeros(0)
         first = self._last or (int(numbers[0]) - 1, float(wrapped[0]))
@@ -376,4 +377,4 @@ class SpeedMeter:
         self._segment = segment[1 - window :]
         self._segments = int(segments[-1])
         self._last = (int(numbers[-1]), float(wrapped[-1]))
-        return dense - 0.5 * (window - 1), speeds
+        return np.asarray(dense - 0.5 * (window - 1), np.float64), speeds

@@ -1,8 +1,8 @@
 """Microphone through PortAudio (`sounddevice`): the master clock of a real rig.
 
 Job: find the device by name and host API, open it at one rate, copy what its callback brings into a ring,
-and say when it has overflowed, ended or gone. Not its job: finding lost frames by time (`drivers.daq.rig_time`),
-calibration of the microphone.
+and say when it has overflowed, ended or gone. Not its job: finding lost frames by time
+(`drivers.daq.rig_time`), calibration of the microphone.
 
 Settings: see `MicrophoneSettings`. ``device = "bench:rigmic"`` is the microphone of a running bench: its
 private sound server is reached by variables that are set here, before PortAudio starts.
@@ -164,8 +164,8 @@ class SoundDeviceMicrophone:
             raise DeviceError(
                 f"{device['name']!r} does not open with {settings.rate_hz} Hz, {settings.format}, input "
                 f"{settings.input}: {error}.", place=self.place, value=settings.rate_hz,
-                remedy=f"Its own rate is {device['default_samplerate']:g} Hz; set rate_hz to what it supports, "
-                "and see that no other program has it open.",
+                remedy=f"Its own rate is {device['default_samplerate']:g} Hz; set rate_hz to what it "
+                "supports, and see that no other program has it open.",
             ) from error  # fmt: skip
         actual_hz = float(self._stream.samplerate)
         if abs(actual_hz / self.rate_hz - 1.0) > 1e-3:
@@ -344,12 +344,12 @@ class SoundDeviceMicrophone:
             self._findings.append(Finding(
                 f"{device['name']!r} gives {default_hz:g} Hz as its own rate and is opened at "
                 f"{self.rate_hz:g} Hz{through}.",
-                remedy="See that the source itself runs at rate_hz (pactl list sources, or the card's manual).",
+                remedy="See that the source itself runs at rate_hz (pactl list sources, the card's manual).",
             ))  # fmt: skip
 
 
 def to_counts(samples: NDArray[Any]) -> NDArray[np.int16]:
-    """Samples of PortAudio (int16, or float32 with 1.0 as full scale) as int16 counts; clipped, not wrapped."""
+    """Samples of PortAudio (int16, or float32 with 1.0 as full scale) as int16 counts; clipped."""
     if samples.dtype == np.int16:
         return samples
     scaled = np.nan_to_num(samples.astype(np.float32) * np.float32(FULL_SCALE), nan=0.0)

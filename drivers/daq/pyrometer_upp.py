@@ -9,7 +9,9 @@ the device's range, and does not jump by more than `jump_k` unless the next read
 
 from __future__ import annotations
 
+import os
 import re
+import termios
 import threading
 import time
 from collections import deque
@@ -146,13 +148,9 @@ class UppPyrometer:
                 place=self.place,
                 remedy="Install it: pip install pyserial.",
             ) from error
-        local: dict[str, Any] = {} if "://" in settings.port else {"exclusive": True}
         try:
-            self._port = serial.serial_for_url(
-                port_path(settings.port), baudrate=settings.baudrate, bytesize=8, parity="E", stopbits=1,
-                timeout=settings.answer_s, write_timeout=settings.answer_s, **local,
-            )  # fmt: skip
-        except (serial.SerialException, OSError, ValueError) as error:
+            self._port = _open_port(serial, settings)
+        except (serial.SerialException, OSError, ValueError, termios.error) as error:
             raise DeviceError(
                 f"the port {settings.port!r} does not open: {error}.", place=f"{self.place}.port",
                 value=settings.port, remedy=port_hint(settings.port),
@@ -273,8 +271,8 @@ class UppPyrometer:
             answer = self._answer_to(f"em{wanted:04d}")
             if answer != b"ok":
                 raise DeviceError(
-                    f"refuses the emissivity {settings.emissivity:g}: {answer!r}.", place=f"{self.place}.emissivity",
-                    value=settings.emissivity, remedy="Ask it for its limits: em?.",
+                    f"refuses the emissivity {settings.emissivity:g}: {answer!r}.",
+                    place=f"{self.place}.emissivity", value=settings.emissivity, remedy="Ask it for its limits: em?.",
                 )  # fmt: skip
             self._findings.append(
                 Finding(f"emissivity changed from {found / 1000:g} to {settings.emissivity:g}.")
@@ -305,7 +303,8 @@ class UppPyrometer:
         answer = self._answer_to(command)
         if not re.fullmatch(rb"\d{4}", answer):
             raise DeviceError(
-                f"answers {answer!r} to {command}.", place=self.place, value=answer.decode("ascii", "replace"),
+                f"answers {answer!r} to {command}.", place=self.place,
+                value=answer.decode("ascii", "replace"),
                 remedy="It is no UPP pyrometer, or the line is disturbed: see the wire log.",
             )  # fmt: skip
         return int(answer)
@@ -355,6 +354,25 @@ class UppPyrometer:
         if not self._stop.is_set():
             self._failure = error
             self._say(error.problem)
+
+
+def _open_port(serial: Any, settings: UppSettings) -> Any:
+    """The port with 8 data bits and even parity; a pty, which has no parity bit, may refuse that one."""
+    path = port_path(settings.port)
+    local: dict[str, Any] = {} if "://" in path else {"exclusive": True}
+
+    def opened(parity: str) -> Any:
+        return serial.serial_for_url(
+            path, baudrate=settings.baudrate, bytesize=8, parity=parity, stopbits=1,
+            timeout=settings.answer_s, write_timeout=settings.answer_s, **local,
+        )  # fmt: skip
+
+    try:
+        return opened("E")
+    except termios.error:
+        if not os.path.realpath(path).startswith("/dev/pts/"):
+            raise
+        return opened("N")
 
 
 class JumpJudge:

@@ -1,12 +1,12 @@
 """What a signal source must be able to do, and the checking of its settings.
 
-Job: the interface between `LiveAcquisition` and its sources, so that third parties can add sources by an entry
-point ``source.KIND`` of the group ``rigctl.devices``. Not its job: any device.
+Job: the interface between `LiveAcquisition` and its sources, so that third parties can add sources by an
+entry point ``source.KIND`` of the group ``rigctl.devices``. Not its job: any device.
 
 Two kinds of sources:
 
-* *slow* sources (`Source`) hand over what has arrived since they were asked last (`take`). Each sample has the
-  host time (`time.monotonic`) at which it arrived. `counted` sources sample with a clock of their own at
+* *slow* sources (`Source`) hand over what has arrived since they were asked last (`take`). Each sample has
+  the host time (`time.monotonic`) at which it arrived. `counted` sources sample with a clock of their own at
   `rate_hz`; the others (polled) are taken when they arrive;
 * the *master* (`Master`), a microphone, counts frames; its count is the rig's time.
 """
@@ -133,7 +133,7 @@ class Source(AnySource, Protocol):
     def convert(
         self, numbers: NDArray[np.int64], values: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Numbers (may get fractions) and physical values (n, channels) of samples; called in order, once each."""
+        """Numbers (may get fractions) and physical values (n, channels) of samples; called in order, once."""
         ...
 
 

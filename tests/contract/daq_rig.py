@@ -1,4 +1,4 @@
-"""What the tests of the live acquisition stand on: emulated devices on a virtual bus and a pty, and a sound library.
+"""What tests of the live acquisition stand on: emulated devices on a virtual bus and a pty, a sound library.
 
 `StandInSound` stands in for sounddevice only where a test needs faults that no sound server makes on demand
 (overflow flags, an unplugged device) or where no server can run.

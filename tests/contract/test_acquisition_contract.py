@@ -146,7 +146,7 @@ def test_blocks_follow_each_other_without_a_gap_in_any_channel(acquisition):
 
 
 def test_values_are_those_of_the_devices(rig, sound):
-    with live(rig, {"microphone": MICROPHONE, **CAN_SOURCES}) as (device, context):
+    with live(rig, {"microphone": MICROPHONE, **CAN_SOURCES}) as (device, _):
         found = blocks(device, 30)
         assert joined(found, "torque") == pytest.approx(TORQUE_NM, abs=0.01)
         assert joined(found, "pressure") == pytest.approx(PRESSURE_BAR, abs=0.001)
@@ -223,7 +223,9 @@ def test_lost_frames_are_invalid_samples_and_counted(rig):
         assert device.clocks()["bridge"]["lost"] == 4
 
 
-@pytest.mark.parametrize("name, node", [("bridge", "amplifier"), ("shaft", "encoder"), ("loop", "current_input")])
+@pytest.mark.parametrize(
+    "name, node", [("bridge", "amplifier"), ("shaft", "encoder"), ("loop", "current_input")]
+)
 def test_a_node_without_power_is_named(rig, name, node):
     with live(rig, {name: CAN_SOURCES[name]}) as (device, _):
         blocks(device, 3)
@@ -240,8 +242,9 @@ def test_an_encoder_that_stands_still_is_an_error_not_a_speed(rig):
 
 def test_a_device_set_up_otherwise_is_refused(rig):
     wrong = CAN_SOURCES["bridge"] | {"channels": {"torque": {"input": 1, "unit": "bar"}}}
-    with pytest.raises(DeviceError, match=r"channels\.torque: input 1 measures in unit 00560000h"), live(
-        rig, {"bridge": wrong}
+    with (
+        pytest.raises(DeviceError, match=r"channels\.torque: input 1 measures in unit 00560000h"),
+        live(rig, {"bridge": wrong}),
     ):
         pass
     wrong = CAN_SOURCES["shaft"] | {"steps_per_turn": 1024}
@@ -277,14 +280,16 @@ def test_a_sound_card_at_another_rate_is_found(rig, sound):
 
 def test_missing_sound_devices_and_libraries_are_named(rig, sound, monkeypatch):
     sound.name = "USB card"
-    with pytest.raises(DeviceError, match=r"microphone\.device: no sound device.*'rigmic'.*'USB card'"), live(
-        rig, {"microphone": MICROPHONE}
+    with (
+        pytest.raises(DeviceError, match=r"microphone\.device: no sound device.*'rigmic'.*'USB card'"),
+        live(rig, {"microphone": MICROPHONE}),
     ):
         pass
     monkeypatch.undo()
     monkeypatch.setitem(__import__("sys").modules, "sounddevice", None)
-    with pytest.raises(DeviceError, match=r"sources\.microphone: the library 'sounddevice' is missing"), live(
-        rig, {"microphone": MICROPHONE}
+    with (
+        pytest.raises(DeviceError, match=r"sources\.microphone: the library 'sounddevice' is missing"),
+        live(rig, {"microphone": MICROPHONE}),
     ):
         pass
 
