@@ -88,7 +88,7 @@ def test_the_page_followed_literally_adds_a_device(tmp_path: Path):
     )
     tested = printed[-1]
     assert "acquisition (live): ok" in tested
-    assert "room.model ACME T100 SN4711" in tested
+    assert "room: model ACME T100 SN4711" in tested
     assert re.search(r"disc_temperature +23.4 °C", tested)
     assert "100 round trips" in tested
     assert re.search(r"acquisition \(live\) +disc_temperature +23.4 °C", tested)

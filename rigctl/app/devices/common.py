@@ -38,7 +38,7 @@ WireLogOption = Annotated[
     typer.Option(
         "--wire-log",
         metavar="DIR",
-        help="Log every transfer there: serial as hex with time, CAN in candump's format.",
+        help="Log every transfer there: serial as hex with time, CAN as candump does.",
     ),
 ]
 _WIDE = 160

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Annotated, Any
 
@@ -55,7 +56,8 @@ def register(app: typer.Typer) -> None:
             for name in roles_of(role):
                 folder = run_dir / name
                 folder.mkdir()
-                report = examine(file, name, round_trips=round_trips, run_dir=folder, wire_log_dir=wire_log)
+                logs = wire_log / name if wire_log else None  # each device opens its bus anew
+                report = examine(file, name, round_trips=round_trips, run_dir=folder, wire_log_dir=logs)
                 reports.append(report)
                 if not as_json:
                     show(report, screen)
@@ -75,8 +77,8 @@ def show(report: DeviceReport, screen: Console) -> None:
         screen.print("  has no wires; its settings are right")
     diagnosis = report.diagnosis
     if diagnosis is not None:
-        identity = ", ".join(f"{key} {value}" for key, value in diagnosis.identity.items())
-        screen.print(f"  {escape(identity) or 'says nothing of itself'}")
+        for line in identity_lines(diagnosis.identity):
+            screen.print(f"  {escape(line)}")
         for reading in diagnosis.values:
             age = f", {seconds_text(reading.age_s)} old" if reading.age_s is not None else ""
             rate = f", {reading.rate_hz:.4g}/s" if reading.rate_hz is not None else ""
@@ -93,6 +95,15 @@ def show(report: DeviceReport, screen: Console) -> None:
         screen.print(f"  {mark} {escape(finding.problem)}")
         if finding.remedy:
             screen.print(f"    {escape(finding.remedy)}")
+
+
+def identity_lines(identity: Mapping[str, str]) -> list[str]:
+    """What a device says of itself, one line; "source.key" of an acquisition: one line for each source."""
+    parts: dict[str, list[str]] = {}
+    for key, value in identity.items():
+        source, dot, inner = key.partition(".")
+        parts.setdefault(f"{source}: " if dot else "", []).append(f"{inner or source} {value}")
+    return [f"{source}{', '.join(said)}" for source, said in parts.items()] or ["says nothing of itself"]
 
 
 def as_mapping(file: RigFile, reports: list[DeviceReport]) -> dict[str, Any]:
