@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import can
 
@@ -33,15 +33,17 @@ from rigctl.hal.bench_paths import bench_folder
 from sim_hardware.bench import pulse
 from sim_hardware.bench.can import BenchCan
 from sim_hardware.bench.commands import CommandServer
-from sim_hardware.bench.microphone import Microphone
-from sim_hardware.bench.plant_loop import PlantLoop
 from sim_hardware.bench.priority import raise_priority
 from sim_hardware.bench.serial.bench import make_ports
 from sim_hardware.bench.serial.ports import SerialPort
 from sim_hardware.bench.settings import BenchSettings, load_bench
 from sim_hardware.bench.signals import OUTPUTS, RigSignals
-from sim_hardware.brake_model import load_brake
-from sim_hardware.plant import Plant, PlantSettings, sound_of
+
+if TYPE_CHECKING:  # the physics load slowly: first the folder and the bus must be ours
+    from sim_hardware.bench.microphone import Microphone
+    from sim_hardware.bench.plant_loop import PlantLoop
+    from sim_hardware.plant import Plant
+    from sim_hardware.plant.sound import Sound
 
 LOCK_NAME = "bench.lock"
 READY_NAME = "bench.json"
@@ -113,17 +115,18 @@ class Bench:
         try:
             self._parts.enter_context(_held(self.folder))
             bus = self._open_bus()
-            microphone = self._start_pulse()
+            pipe = self._start_pulse()
             plant, sound = self._make_plant()
+            gc.collect()
+            gc.freeze()  # what lives now lives until the end: collections stay short
+            if self.settings.realtime:  # before the threads start: they inherit it
+                self.priority = raise_priority([os.getpid(), *self._pulse_pids])
             while bus.recv(0) is not None:  # devices do not hear what was said before they had power
                 pass
             self._can = BenchCan(bus, self.signals, self.settings.can)
-            if microphone is not None:
-                self._microphone = Microphone(
-                    self.settings.microphone, sound, plant.sound_channel.scale, microphone
-                )
-            take_sound = self._microphone.submit if self._microphone is not None else None
-            self._loop = PlantLoop(plant, self.signals, sound=take_sound, failed=self._fail)
+            if pipe is not None:
+                self._microphone = self._make_microphone(plant, sound, pipe)
+            self._loop = self._make_loop(plant)
             for part in (self._microphone, self._loop, self._can):
                 if part is not None:
                     self._parts.callback(part.stop)
@@ -135,15 +138,11 @@ class Bench:
             commands = CommandServer(self.folder, self.command)
             self._parts.callback(commands.stop)
             commands.start()
-            if self.settings.realtime:
-                self.priority = raise_priority([os.getpid(), *self._pulse_pids])
             self._started_s = time.monotonic()
             self._tell_ready()
         except BaseException:
             self._parts.close()
             raise
-        gc.collect()
-        gc.freeze()  # what lives now lives until the end: collections stay short
 
     def stop(self) -> None:
         """Take everything down: the wires go dead as in a power cut."""
@@ -186,7 +185,10 @@ class Bench:
         self._sound_environment = server.environment()
         return server.pipe
 
-    def _make_plant(self) -> tuple[Plant, Any]:
+    def _make_plant(self) -> tuple[Plant, Sound]:
+        from sim_hardware.brake_model import load_brake
+        from sim_hardware.plant import Plant, PlantSettings, sound_of
+
         s = self.settings
         plant_settings = load_model(s.plant, PlantSettings)
         with translated(s.brake):
@@ -194,6 +196,17 @@ class Bench:
         plant = Plant(plant_settings, brake, seed=self.seed)
         plant.compile()
         return plant, sound_of(plant_settings, brake, self.seed)
+
+    def _make_microphone(self, plant: Plant, sound: Sound, pipe: Path) -> Microphone:
+        from sim_hardware.bench.microphone import Microphone
+
+        return Microphone(self.settings.microphone, sound, plant.sound_channel.scale, pipe)
+
+    def _make_loop(self, plant: Plant) -> PlantLoop:
+        from sim_hardware.bench.plant_loop import PlantLoop
+
+        take_sound = self._microphone.submit if self._microphone is not None else None
+        return PlantLoop(plant, self.signals, sound=take_sound, failed=self._fail)
 
     def _open_bus(self) -> can.BusABC:
         arguments = self.settings.bus.arguments
