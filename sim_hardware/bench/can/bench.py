@@ -335,7 +335,7 @@ class BenchCan:
                 self.disturb(fields.pop("node"), **fields)
                 return {}
             if action == "power":
-                self.power(fields["node"], bool(fields["on"]))
+                self.power(fields["node"], _switch(fields["on"]))
                 return {}
             if action == "status":
                 return self.call(self._status)
@@ -374,6 +374,15 @@ class BenchCan:
         node.reboot(outage_ms)
 
 
+def _switch(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise ConfigError(
+            f"on = {value!r} is neither true nor false.",
+            place="bench: can: power", value=value, remedy="Give true or false.",
+        )  # fmt: skip
+    return value
+
+
 def _rule(fields: dict[str, Any]) -> FaultRule:
     try:
         return FaultRule.model_validate(fields)
@@ -381,8 +390,10 @@ def _rule(fields: dict[str, Any]) -> FaultRule:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"]) or "fault"
         raise ConfigError(
-            f"{key}: {first['msg']}.", place="bench: can: fault", value=first.get("input"), remedy=""
-        ) from error
+            f"{key}: {first['msg']}.",
+            place="bench: can: fault", value=first.get("input"),
+            remedy=str(first.get("ctx", {}).get("remedy", "The fields are in the devices' manual.")),
+        ) from error  # fmt: skip
 
 
 def _make_devices(settings: BenchCanSettings, signals: RigSignals) -> dict[str, Device]:

@@ -183,6 +183,7 @@ def test_commands_as_json(bench: Bench):
         ({"do": "explode"}, "explode.*Give do = fault"),
         ({"do": "power", "node": "regulator"}, "lacks a field"),
         ({"do": "power", "node": "toaster", "on": True}, "no node 'toaster'.*encoder"),
+        ({"do": "power", "node": "regulator", "on": "no"}, "neither true nor false"),
         ({"do": "fault", "kind": "drop", "nodes": 3}, "nodes: Extra inputs"),
         ({"do": "fault", "kind": "mute"}, "mute needs a node"),
         ({"do": "fault", "kind": "reboot", "node": 99}, "no node 99.*0x10"),

@@ -16,38 +16,14 @@ FRAMES = st.lists(
     max_size=60,
 )
 #: Requests that reach the objects: command, object, four bytes.
-INDICES = st.sampled_from(
-    [
-        4097,
-        4099,
-        4101,
-        4104,
-        4116,
-        4118,
-        4119,
-        4120,
-        4137,
-        5120,
-        5632,
-        6144,
-        6656,
-        8448,
-        8704,
-        24576,
-        24577,
-        24578,
-        24579,
-        24640,
-        24882,
-        25344,
-        25364,
-        25376,
-        25457,
-        25617,
-        25668,
-        37156,
-    ]
-)
+COMMUNICATION = (
+    0x1001, 0x1003, 0x1005, 0x1008, 0x1014, 0x1016, 0x1017, 0x1018, 0x1029, 0x1400, 0x1600, 0x1800, 0x1A00,
+)  # fmt: skip
+DEVICE = (
+    0x2100, 0x2200, 0x6000, 0x6001, 0x6002, 0x6003, 0x6040, 0x6132, 0x6300, 0x6314, 0x6320, 0x6371, 0x6411,
+    0x6444, 0x9124,
+)  # fmt: skip
+INDICES = st.sampled_from((*COMMUNICATION, *DEVICE))
 REQUESTS = st.lists(
     st.tuples(
         st.sampled_from(ALL),

@@ -266,7 +266,7 @@ def test_two_processes_over_multicast():
     fast = [m for m in frames if m.arbitration_id == 0x1A0]
     assert {bytes(m.data) for m in fast} == {struct.pack("<ii", 10000, 0)}
     span_ms = (fast[-1].timestamp - fast[0].timestamp) * 1e3
-    assert len(fast) == pytest.approx(span_ms + 1, abs=60)  # on the grid, whatever the machine's load
+    assert len(fast) == pytest.approx(span_ms + 1, abs=250), "lost, beyond what a loaded machine may be late"
 
 
 def test_settings_refuse_nonsense():
