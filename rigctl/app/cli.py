@@ -59,8 +59,12 @@ def run(
         typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the simulated rig. [default: random]"),
     ] = None,
     time: Annotated[
-        Time, typer.Option("--time", help="virtual: as fast as possible; real: by the clock.")
-    ] = Time.VIRTUAL,
+        Time | None,
+        typer.Option(
+            "--time",
+            help="virtual: as fast as possible; real: by the clock. [default: virtual on a simulated rig]",
+        ),
+    ] = None,
     report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
 ) -> None:
     """Run a program: condition, brake, record, find squeal, report.
@@ -71,7 +75,11 @@ def run(
     from rigctl.app.running import RunOptions
     from rigctl.app.running import run as run_program
 
-    raise typer.Exit(run_program(RunOptions(program, rig, out, name, seed, time.value, report), _console()))
+    raise typer.Exit(
+        run_program(
+            RunOptions(program, rig, out, name, seed, time.value if time else None, report), _console()
+        )
+    )
 
 
 @app.command()
@@ -135,13 +143,16 @@ def stability(
     raise typer.Exit(show_stability(brake, k, mu, max_bar, _console()))
 
 
-def _add_model_commands() -> None:
+def _add_families() -> None:
+    from rigctl.app import bench, devices
     from rigctl.app.model import model_app
 
     app.add_typer(model_app(), name="model")
+    devices.register(app)
+    bench.register(app)
 
 
-_add_model_commands()
+_add_families()
 
 
 def _version(wanted: bool) -> None:

@@ -32,6 +32,7 @@ from rigctl.app.durations import duration_text
 from rigctl.app.progress_view import ProgressView
 from rigctl.app.reporting import make_report
 from rigctl.app.supervisor import Supervisor
+from rigctl.config.rig import RigConfig
 from rigctl.core.errors import ConfigError, SafetyTrip
 from rigctl.core.journal import read_journal
 from rigctl.engine.state import Outcome, RunResult
@@ -50,14 +51,14 @@ PROCESS_CAUSES = frozenset(
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What a person has chosen on the command line."""
+    """What a person has chosen on the command line. `time`: None for what suits the rig."""
 
     program: Path
     rig: Path
     out: Path
     name: str | None
     seed: int | None
-    time: str
+    time: str | None
     report: bool = True
 
 
@@ -71,11 +72,12 @@ def run(options: RunOptions, console: Console) -> int:
     """
     program = read_program(options.program)
     rig = read_rig(options.rig)
+    time_mode = _time_of(rig, options)
     resolved_paths(rig, options.rig)
     limits = load_limits((options.rig.resolve().parent / rig.safety.limits).resolve())
     if rig.prediction is not None:
         prediction_of((options.rig.resolve().parent / rig.prediction.brake).resolve())
-    context = RigContext(Path(), options.time, options.seed, str(options.rig), options.rig.resolve().parent)
+    context = RigContext(Path(), time_mode, options.seed, str(options.rig), options.rig.resolve().parent)
     build_rig(rig, context)
     result = dry_run(program, rig)
     if not result.ok:
@@ -96,7 +98,7 @@ def run(options: RunOptions, console: Console) -> int:
         program_path=options.program,
         rig=rig,
         rig_path=options.rig,
-        time=options.time,
+        time=time_mode,
         seed=secrets.randbelow(2**31) if options.seed is None else options.seed,
         limits_hash8=limits.hash8,
     )
@@ -115,6 +117,20 @@ def run(options: RunOptions, console: Console) -> int:
         return _carry_out(
             campaign, file, attempt=0, done=[], acknowledgement="", report=options.report, console=console
         )
+
+
+def _time_of(rig: RigConfig, options: RunOptions) -> str:
+    """How time runs: by the clock on a real rig, as fast as possible on a simulated one by default."""
+    if rig.simulated:
+        return options.time or "virtual"
+    if options.time == "virtual":
+        raise ConfigError(
+            "a rig of real devices runs by the clock.",
+            place="--time virtual",
+            value=options.time,
+            remedy="Leave --time away, or use --rig configs/rigs/simulated.toml.",
+        )
+    return "real"
 
 
 def resume(folder: Path, acknowledgement: str, report: bool, console: Console) -> int:
