@@ -47,7 +47,7 @@ NOT_ASKED: Final = Granted(False, False, "virtual time: not asked for")
 
 def _options(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="rigctl.safety", description="Watchdog of a rig.")
-    parser.add_argument("--run-dir", type=Path, required=True, help="folder for watchdog.sock")
+    parser.add_argument("--run-dir", type=Path, help="folder for watchdog.sock; not with --supervise")
     parser.add_argument("--limits", type=Path, required=True, help="limits file (TOML)")
     parser.add_argument("--journal", type=Path, required=True, help="journal of the campaign")
     parser.add_argument("--link", required=True, help="safety channel, module:Class")
@@ -78,7 +78,10 @@ def _options(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--every", type=float, default=1.0, help="with --supervise: seconds between lines of values"
     )
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.run_dir is None and not options.supervise:
+        parser.error("the following arguments are required: --run-dir")
+    return options
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
 import signal
+import subprocess
+import sys
 import time
+from pathlib import Path
 
-from can_safety_bench import WAIT_S, CanRig, CanWatchdog
+from can_safety_bench import ROOT, WAIT_S, CanRig, CanWatchdog
 
 from sim_hardware.bench.can import FaultRule
 
@@ -53,3 +57,24 @@ def test_a_bus_without_a_safety_node_is_told_with_what_was_heard() -> None:
         words = watch.logs()
         assert "safety I/O 30h on bus 'main': sends no state (1B0h) within 1.5 s" in words
         assert "1A0h" in words and "Check its supply" in words and "Traceback" not in words
+
+
+def test_the_options_for_a_rig_file(tmp_path: Path) -> None:
+    text = (ROOT / "configs" / "rigs" / "simulated.toml").read_text(encoding="utf-8")
+    assert '[devices.safety]\nkind = "simulated"' in text
+    table = '[devices.safety]\nkind = "can"\nbus = "main"\n[buses.main]\ninterface = "socketcan"'
+    rig_file = tmp_path / "rig.toml"
+    rig_file.write_text(text.replace('[devices.safety]\nkind = "simulated"', table), encoding="utf-8")
+
+    def options(*arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "drivers.safety_io", *arguments]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+    lines = options(str(rig_file), "--start-sensors").stdout.splitlines()
+    assert lines[:3] == ["--link", "drivers.safety_io.watchdog_link:CanSafetyLink", "--link-settings"]
+    settings = json.loads(lines[3])
+    assert settings["bus"] == {"interface": "socketcan"}
+    assert settings["channel"]["start_nodes"] == [0x20, 0x21, 0x22, 0x30]
+    assert json.loads(options(str(rig_file)).stdout.splitlines()[3])["channel"]["start_nodes"] == [0x30]
+    refused = options(str(ROOT / "configs" / "rigs" / "simulated.toml"))
+    assert refused.returncode == 2 and "devices.safety: is of kind 'simulated'" in refused.stderr
