@@ -123,7 +123,8 @@ class Drive590:
             "0F": self._health(),
             tag_mnemonic(SEQUENCE): self._sequence,
             tag_mnemonic(SEQUENCE_STATUS): self._sequence_status(),
-            "V0": 0x0590,
+            "II": 0x0590,
+            "V0": 0x0414,
         }
         if mnemonic in words:
             return f">{words[mnemonic]:04X}"

@@ -10,6 +10,7 @@ A host that opens the pty at another speed than the device's is heard as noise: 
 
 from __future__ import annotations
 
+import errno
 import heapq
 import itertools
 import os
@@ -28,6 +29,8 @@ from sim_hardware.bench.serial.transports import PtyTransport, TcpTransport, Tra
 #: An idle line of this many characters ends a message.
 MESSAGE_GAP_CHARACTERS = 3.5
 LONGEST_SLEEP_S = 0.5
+#: How often a port that no host has open is looked at.
+ABSENT_HOST_S = 0.01
 
 
 class _Queue:
@@ -197,8 +200,14 @@ class SerialPort:
                 with self._lock:
                     next_s = self._work(time.monotonic())
                     descriptors = [self._wake_read, *self._transport.descriptors()]
-                pause_s = min(max(next_s - time.monotonic(), 0.0), LONGEST_SLEEP_S)
-                ready, _, _ = select.select(descriptors, [], [], pause_s)
+                longest_s = LONGEST_SLEEP_S if len(descriptors) > 1 else ABSENT_HOST_S
+                pause_s = min(max(next_s - time.monotonic(), 0.0), longest_s)
+                try:
+                    ready, _, _ = select.select(descriptors, [], [], pause_s)
+                except OSError as error:
+                    if error.errno != errno.EBADF:
+                        raise
+                    continue  # the plug was pulled in between
                 if self._wake_read in ready:
                     os.read(self._wake_read, 4096)
         except BaseException as error:

@@ -11,7 +11,7 @@ import socket
 import termios
 import tty
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 _READ_BYTES = 4096
 
@@ -50,12 +50,18 @@ class Transport(Protocol):
 
 
 class PtyTransport:
-    """A pty behind a symbolic link."""
+    """A pty behind a symbolic link.
+
+    When the last host has closed it, its settings go back to where they began: the C library refuses to set 7
+    data bits on a pty that has been set to them before, which no real port does.
+    """
 
     def __init__(self, link: Path) -> None:
         self._link = link
-        self._master = self._slave = -1
+        self._master = -1
         self._path = ""
+        self._host_there = False
+        self._fresh: list[Any] = []
 
     @property
     def address(self) -> str:
@@ -66,10 +72,13 @@ class PtyTransport:
         """See `Transport.plug`. The link replaces one left by a bench that was killed."""
         if self._master >= 0:
             return
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
+        self._master, slave = os.openpty()
+        tty.setraw(slave)
+        self._fresh = termios.tcgetattr(slave)
         os.set_blocking(self._master, False)
-        self._path = os.ttyname(self._slave)
+        self._path = os.ttyname(slave)
+        os.close(slave)
+        self._host_there = False
         self._link.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         fresh = self._link.with_name(f".{self._link.name}.{os.getpid()}")
         fresh.unlink(missing_ok=True)
@@ -81,41 +90,45 @@ class PtyTransport:
         if self._master < 0:
             return
         os.close(self._master)
-        os.close(self._slave)
-        self._master = self._slave = -1
-        if self._link.is_symlink() and os.readlink(self._link) == self._path:
+        self._master = -1
+        if self._link.is_symlink() and str(self._link.readlink()) == self._path:
             self._link.unlink(missing_ok=True)
 
     def descriptors(self) -> list[int]:
         """See `Transport.descriptors`."""
-        return [] if self._master < 0 else [self._master]
+        return [self._master] if self._master >= 0 and self._host_there else []
 
     def read(self) -> bytes:
         """See `Transport.read`."""
         if self._master < 0:
             return b""
         try:
-            return os.read(self._master, _READ_BYTES)
+            data = os.read(self._master, _READ_BYTES)
         except BlockingIOError:
-            return b""
+            data = b""
         except OSError as error:
-            if error.errno == errno.EIO:  # no host has it open; our own end normally prevents this
-                return b""
-            raise
+            if error.errno != errno.EIO:  # EIO: no host has it open
+                raise
+            if self._host_there:
+                self._host_there = False
+                termios.tcsetattr(self._master, termios.TCSANOW, self._fresh)
+            return b""
+        self._host_there = True
+        return data
 
     def write(self, data: bytes) -> None:
         """See `Transport.write`."""
-        if self._master < 0:
+        if self._master < 0 or not self._host_there:
             return
         try:
             os.write(self._master, data)
-        except BlockingIOError:
-            pass  # nobody reads: the bytes are lost, as on a wire
+        except OSError:
+            pass  # nobody reads, or the host has just gone: the bytes are lost, as on a wire
 
     def speed_is(self, baud: int) -> bool:
         """See `Transport.speed_is`. A pty forgets parity and character length, not the speed."""
         symbol = getattr(termios, f"B{baud}", None)
-        return symbol is None or termios.tcgetattr(self._slave)[5] == symbol
+        return symbol is None or termios.tcgetattr(self._master)[5] == symbol
 
 
 class TcpTransport:
