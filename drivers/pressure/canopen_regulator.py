@@ -225,7 +225,7 @@ class CanopenPressureActuator:
         age_s = time.monotonic() - self._reported_s
         counts = self._actual_counts
         if counts is None or age_s > _STALE_S:
-            problem = "its newest actual value is not valid" if counts is None else f"is {age_s:.2f} s old"
+            problem = "its newest actual value is not valid" if counts is None else f"it is {age_s:.2f} s old"
             raise DeviceError(
                 f"no actual value: {problem}.", place=self._node.place,
                 remedy="Look at the regulator's sensor and at the bus load.",

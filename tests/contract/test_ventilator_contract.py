@@ -31,7 +31,7 @@ def wire(tmp_path):
 def opened(world, **changes):
     ventilator = world.ventilator(**changes)
     ventilator.open()
-    world.run(0.1)
+    world.run(0.02)
     return ventilator
 
 
