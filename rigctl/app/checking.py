@@ -22,7 +22,8 @@ def show_check(program_path: Path, rig_path: Path, console: Console) -> int:
     resolved_paths(rig, rig_path)
     folder = rig_path.resolve().parent
     load_limits((folder / rig.safety.limits).resolve())
-    build_rig(rig, RigContext(Path(), "virtual", None, str(rig_path), folder))
+    time = "virtual" if rig.simulated else "real"
+    build_rig(rig, RigContext(Path(), time, None, str(rig_path), folder))
     result = dry_run(program, rig)
     estimate = result.estimate
     console.print(f"{program.name} on {rig.name}", highlight=False)

@@ -36,6 +36,8 @@ from rigctl.hal.devices import RigContext
 from rigctl.hal.diagnosis import Diagnosis
 
 RETRY_S = 2.0
+OPENING = "is being opened"
+LONGEST_OPENING_S = 60.0
 _STALE_S = 1.0
 _JOIN_S = 10.0
 
@@ -46,7 +48,7 @@ class View:
 
     diagnosis: Diagnosis | None = None
     at_s: float = 0.0
-    failure: str = "is being opened"
+    failure: str = OPENING
 
 
 class Watcher:
@@ -128,7 +130,8 @@ def register(app: typer.Typer) -> None:
             float, typer.Option("--every", min=0.05, max=60, help="Seconds between readings.")
         ] = 0.2,
         duration: Annotated[
-            float | None, typer.Option("--for", min=0.1, help="End after so many seconds. [default: Ctrl-C]")
+            float | None,
+            typer.Option("--for", min=0.1, help="End so many seconds after all are open. [default: Ctrl-C]"),
         ] = None,
         wire_log: WireLogOption = None,
     ) -> None:
@@ -163,13 +166,17 @@ def watch(
     opening = threading.Lock()
     watchers = [Watcher(file, role, context, every_s, opening) for role in roles]
     before = signal.signal(signal.SIGTERM, _interrupt)
-    end_s = float("inf") if duration_s is None else time.monotonic() + duration_s
+    end_s = float("inf")
+    tried_by_s = time.monotonic() + LONGEST_OPENING_S
     try:
         for watcher in watchers:
             watcher.start()
         with Live(table(watchers), console=console(), auto_refresh=False) as live:
-            while time.monotonic() < end_s:
-                time.sleep(max(0.0, min(every_s, end_s - time.monotonic())))
+            while (now_s := time.monotonic()) < end_s:
+                opening_now = any(watcher.view.failure == OPENING for watcher in watchers)
+                if duration_s is not None and end_s == float("inf"):
+                    end_s = now_s + duration_s if not opening_now or now_s > tried_by_s else end_s
+                time.sleep(max(0.0, min(every_s, end_s - now_s)))
                 live.update(table(watchers), refresh=True)
     except KeyboardInterrupt:
         pass
