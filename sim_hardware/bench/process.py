@@ -172,13 +172,14 @@ class Bench:
 
     def _start_pulse(self) -> Path | None:
         """The pipe of the microphone's server, or None where there is no microphone."""
+        server = pulse.PulseServer(self.folder, self.settings.microphone)
+        server.clear()
         if not self.settings.microphone.enabled:
             self.notes.append("no microphone: enabled = false in the bench file")
             return None
         if not pulse.installed():
             self.notes.append("no microphone: PulseAudio is not installed (apt-get install pulseaudio)")
             return None
-        server = pulse.PulseServer(self.folder, self.settings.microphone)
         self._parts.callback(server.stop)
         server.start()
         self._pulse_pids.append(server.pid)

@@ -57,12 +57,13 @@ class PulseServer:
         self.pipe = self._folder / "microphone.pipe"
         self._socket = self._folder / "native"
         self._pid_file = self._folder / "pulseaudio.pid"
+        self._alsa = self._folder / "asound.conf"
         self._process: subprocess.Popen[bytes] | None = None
 
     def environment(self) -> dict[str, str]:
         """Variables with which a recording program finds the microphone."""
         return {
-            "ALSA_CONFIG_PATH": f"{SYSTEM_ALSA}:{self._folder / 'asound.conf'}",
+            "ALSA_CONFIG_PATH": f"{SYSTEM_ALSA}:{self._alsa}",
             "PULSE_SERVER": f"unix:{self._socket}",
         }
 
@@ -82,10 +83,8 @@ class PulseServer:
                 place=str(self._socket),
                 remedy="Set RIGCTL_BENCH_DIR to a folder with a shorter path.",
             )
+        self.clear()
         self._folder.mkdir(mode=0o700, exist_ok=True)
-        self._end_leftover()
-        for path in (self._socket, self.pipe):
-            path.unlink(missing_ok=True)
         self._write_configuration()
         command = [
             "pulseaudio", "-n", "-F", str(self._folder / "default.pa"), "--daemonize=no",
@@ -122,7 +121,12 @@ class PulseServer:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
-        for path in (self._socket, self.pipe, self._pid_file):
+        self.clear()
+
+    def clear(self) -> None:
+        """Remove what a bench leaves, so that nobody looks for a microphone here; its log stays."""
+        self._end_leftover()
+        for path in (self._socket, self.pipe, self._pid_file, self._alsa):
             path.unlink(missing_ok=True)
 
     @property
@@ -143,7 +147,7 @@ class PulseServer:
             f"format={_FORMATS[s.format]} rate={s.rate_hz} channels=1\n"
             f"set-default-source {s.name}\n"
         )
-        (self._folder / "asound.conf").write_text(
+        self._alsa.write_text(
             f'pcm.{s.name} {{ type pulse server "unix:{self._socket}" device "{s.name}"\n'
             f'  hint {{ show on description "Microphone of the bench" }} }}\n'
         )

@@ -364,3 +364,4 @@ def test_sigkill_leaves_nothing_that_blocks_the_next_start(bench: BenchProcess) 
     assert again.process.returncode == 0
     left = {path.name for path in again.folder.iterdir()}
     assert left <= {"bench.lock", "sound"}
+    assert not (again.folder / "sound" / "asound.conf").exists()  # of the bench that was killed
