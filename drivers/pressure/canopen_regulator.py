@@ -34,6 +34,7 @@ EMCY_NAMES = {
 _RENEW_S = 0.02
 _STALE_S = 0.1
 _SILENT_S = 0.25
+_SILENT_LOOKS = 3
 _OPEN_S = 1.0
 _VENT_FRAMES = 10  # repeats of a vent when the lease is not in force
 _BAD_FRAMES = 5
@@ -87,7 +88,7 @@ class CanopenPressureActuator:
         self._status: int | None = None
         self._actual_counts: int | None = None
         self._reported_s = float("-inf")
-        self._bad_frames = self._fault_frames = 0
+        self._bad_frames = self._fault_frames = self._silent_looks = 0
         self._rate_from_s, self._reports = 0.0, 0
 
     # -- life -------------------------------------------------------------------------------------
@@ -303,7 +304,9 @@ class CanopenPressureActuator:
         if self._node.failure is not None:
             return
         silent_s = now_s - self._reported_s
-        if silent_s > _SILENT_S:
+        # Looked at several times: after a stall of this process frames still wait to be read.
+        self._silent_looks = self._silent_looks + 1 if silent_s > _SILENT_S else 0
+        if self._silent_looks >= _SILENT_LOOKS:
             self._node.fail(f"has sent no {self._tpdo.name} for {silent_s:.2f} s")
         elif self._vented:
             if in_force or self._vent_frames > 0:

@@ -30,9 +30,11 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 REGULATOR, OUTPUT = 0x10, 0x31
 PRESSURE_SETTINGS: dict[str, Any] = {
     "bus": "main", "node": REGULATOR, "range_bar": 50.0, "configure": True,
-    "loss_reaction": {"object": "2100h:0 u8", "vent": 1},
+    "loss_reaction": {"object": "2100h:0 u8", "vent": 1}, "watch_ms": 600, "silence_s": 0.6,
 }  # fmt: skip
-VENTILATOR_SETTINGS: dict[str, Any] = {"bus": "main", "node": OUTPUT, "full_m3_h": 1000.0, "configure": True}
+VENTILATOR_SETTINGS: dict[str, Any] = {
+    "bus": "main", "node": OUTPUT, "full_m3_h": 1000.0, "configure": True, "watch_ms": 600, "silence_s": 0.6,
+}  # fmt: skip
 _channels = itertools.count()
 
 
