@@ -272,11 +272,11 @@ class UppPyrometer:
             if answer != b"ok":
                 raise DeviceError(
                     f"refuses the emissivity {settings.emissivity:g}: {answer!r}.",
-                    place=f"{self.place}.emissivity", value=settings.emissivity, remedy="Ask it for its limits: em?.",
+                    place=f"{self.place}.emissivity", value=settings.emissivity,
+                    remedy="Ask it for its limits: em?.",
                 )  # fmt: skip
-            self._findings.append(
-                Finding(f"emissivity changed from {found / 1000:g} to {settings.emissivity:g}.")
-            )
+            change = f"emissivity changed from {found / 1000:g} to {settings.emissivity:g}."
+            self._findings.append(Finding(change))
             found = self._thousandths("em")
         if found != wanted:
             raise DeviceError(

@@ -19,10 +19,12 @@ from drivers.daq.source import Master
 from rigctl.core.errors import DeviceError
 from rigctl.core.units import NS_PER_S
 
-GAP_SEEN_S = 0.5
+WARM_S = 0.5
+# all callbacks of so long are late: frames are missing, and it is not a machine that was busy for a while
+GAP_SEEN_S = 2.0
 RATE_TOLERANCE = 0.005
 # frames may come late for a while (a stalled machine), but not early
-EARLY_SLACK_S, LATE_SLACK_S = 0.05, 0.5
+EARLY_SLACK_S, LATE_SLACK_S = 0.05, 1.0
 RATE_AFTER_S = 1.0
 
 
@@ -118,7 +120,7 @@ class SoundTime:
     @property
     def warm(self) -> bool:
         """See `RigTime`."""
-        return self._first is not None and self._newest[1] - self._first[1] >= GAP_SEEN_S
+        return self._first is not None and self._newest[1] - self._first[1] >= WARM_S
 
     def update(self, now_s: float) -> None:
         """See `RigTime`."""

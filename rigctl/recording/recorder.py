@@ -21,7 +21,7 @@ from typing import Any, Final
 
 from rigctl.core.errors import DeviceError, LinkClosed, RecordingError
 from rigctl.core.journal import Journal, Record
-from rigctl.core.ring import SampleRing
+from rigctl.core.ring import RING_NAME, SampleRing
 from rigctl.core.wire import Link, Listener, Message
 from rigctl.recording.braking import COMPLETE, INCOMPLETE, Evaluator
 from rigctl.recording.campaign import Campaign, require_free_space
@@ -31,7 +31,6 @@ from rigctl.recording.running import RunningBraking
 
 COPIED_EVERY_S: Final = 2.0  # rig time between two words of progress to the controller
 POLL_MS: Final = 200
-RING_NAME: Final = "ring"
 
 
 class SharedJournal:

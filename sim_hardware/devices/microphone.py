@@ -22,11 +22,10 @@ import numpy as np
 from rigctl.config.loading import load_model
 from rigctl.core.channels import MICROPHONE, ChannelSpec
 from rigctl.core.errors import DeviceError, LinkClosed
-from rigctl.core.ring import SampleRing
+from rigctl.core.ring import RING_NAME, SampleRing
 from rigctl.core.wire import Link, Listener, connect
 from sim_hardware.brake_model import load_brake
 from sim_hardware.devices.options import add_plant_arguments
-from sim_hardware.devices.session import RING_NAME
 from sim_hardware.plant import Plant, PlantSettings, SoundJob, sound_of
 
 SOCKET_NAME = "microphone.sock"

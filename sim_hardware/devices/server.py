@@ -19,7 +19,7 @@ from typing import Any
 from rigctl.core.errors import DeviceError, LinkClosed, RigctlError
 from rigctl.core.wire import Link, Listener
 from sim_hardware.devices.options import add_plant_arguments
-from sim_hardware.devices.session import RING_NAME, SOCKET_NAME
+from sim_hardware.devices.session import SOCKET_NAME
 
 VIRTUAL_RELAY_TIMEOUT_S = 10.0  # wall clock: the watchdog process itself is late only when it is dead
 LEASE_S = 0.25  # real time: set-points older than this are dropped
@@ -280,7 +280,7 @@ def main() -> None:
     listener = Listener(options.run_dir / SOCKET_NAME)  # before the slow imports: the others can connect
 
     from rigctl.config.loading import load_model
-    from rigctl.core.ring import SampleRing
+    from rigctl.core.ring import RING_NAME, SampleRing
     from sim_hardware.brake_model import load_brake
     from sim_hardware.devices.microphone import BATCH, SimulatedMicrophone
     from sim_hardware.plant import Plant, PlantSettings

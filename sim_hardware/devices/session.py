@@ -16,12 +16,11 @@ from typing import Any
 from rigctl.core.blocks import Block
 from rigctl.core.channels import ChannelSpec
 from rigctl.core.errors import DeviceError
-from rigctl.core.ring import SampleRing
+from rigctl.core.ring import RING_NAME, SampleRing
 from rigctl.core.wire import Link, connect
 from rigctl.hal.devices import Request, RigContext
 
 SOCKET_NAME = "rig.sock"
-RING_NAME = "ring"
 START_TIMEOUT_S = 180.0  # the first start on a machine compiles the kernels
 BLOCK_TIMEOUT_S = 20.0
 DEFAULT_RELAY_TIMEOUT_S = 0.15
