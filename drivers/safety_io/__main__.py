@@ -1,8 +1,8 @@
 """``python -m drivers.safety_io RIG.toml``: options that give `python -m rigctl.safety` this rig's channel.
 
 Job: print ``--link`` and ``--link-settings`` of a rig file whose safety channel is of kind "can", for running
-the watchdog alone at bring-up. Reads the tables of buses and safety channel only. Not its job: running it, and
-checking the rest of the rig file.
+the watchdog alone at bring-up. Reads the tables of buses and safety channel only. Not its job: running it,
+and checking the rest of the rig file.
 """
 
 from __future__ import annotations

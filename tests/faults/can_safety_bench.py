@@ -1,7 +1,7 @@
 """A real rig for the real watchdog: the bench's CANopen nodes, the watchdog process, a controller process.
 
-The nodes and their bus are in the test's process, in a thread that has real-time priority where that is
-allowed; the relay is judged by what the emulated node does, with the times at which it does it.
+The nodes and their bus are in the test's process, which has real-time priority where that is allowed; the
+relay is judged by what the emulated node does, with the times at which it does it.
 """
 
 from __future__ import annotations
@@ -96,9 +96,11 @@ class CanRig:
             self.signals.publish(time.monotonic_ns(), **samples)
 
     def __enter__(self) -> Self:
+        # Threads and processes inherit it: a thread that waits for a processor with the interpreter's lock in
+        # its hands would silence the nodes.
+        with contextlib.suppress(OSError):
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
         self.can.start()
-        with contextlib.suppress(OSError, DeprecationWarning):
-            self.can.call(lambda: os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20)))
         self._thread.start()
         return self
 
@@ -107,6 +109,8 @@ class CanRig:
         self._thread.join(1.0)
         self.can.stop()
         self.bus.shutdown()
+        with contextlib.suppress(OSError):
+            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
     @property
     def relay(self) -> bool:

@@ -25,7 +25,6 @@ def main() -> None:
     k = int(sys.argv[3])
     told = ""
     due_s = time.monotonic()
-    asked = False
     while True:
         due_s += BLOCK_S
         time.sleep(max(0.0, due_s - time.monotonic()))
@@ -36,9 +35,8 @@ def main() -> None:
         except RigctlError as error:
             print(f"stopped {error}", flush=True)
             return
-        if not asked:
+        if guard.state == "locked" and k % 10 == 0:
             guard.arm()
-            asked = True
         if guard.state != told:
             told = guard.state
             print(told, flush=True)
