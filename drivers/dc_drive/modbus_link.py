@@ -10,6 +10,7 @@ these together with control word and reference, and an answer of the other lengt
 
 from __future__ import annotations
 
+import logging
 import termios
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -28,6 +29,7 @@ from rigctl.hal.diagnosis import Finding
 from rigctl.hal.wirelog import WireLog
 
 EXCEPTIONS = {1: "illegal function", 2: "illegal data address", 3: "illegal data value", 4: "device failure"}
+logging.getLogger("pymodbus").addHandler(logging.NullHandler())  # what it says is in our own errors
 QUIET_S = 0.02
 SCALING_TOLERANCE = 1e-3
 

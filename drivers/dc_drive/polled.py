@@ -138,6 +138,7 @@ class PolledDrive:
                 with self._link_lock:
                     times = list(measured(self._link.status_exchange, round_trips))
                     self._findings = self._link.findings()
+                    self._cycle()  # the thread had to wait: its report is old by now
             except LinkError as error:
                 raise DeviceError(f"{error}.", place=self._place, remedy=port_hint(self._port)) from error
         with self._lock:
