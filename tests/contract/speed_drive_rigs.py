@@ -25,7 +25,9 @@ from sim_hardware.devices.roles import SimulatedDrive
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL_SPEED_RPM = 1000.0
-SAFE_LOSS = {"58.16": 0.5}
+SAFE_LOSS = {"58.16": 1.0}
+#: A loaded test machine answers late; what is tested are reactions, not times.
+PATIENCE = {"reply_timeout_s": 0.25, "deadline_s": 0.6}
 
 
 class Shaft:
@@ -143,6 +145,7 @@ def emulated(
     *,
     parameters: Mapping[str, float] | None = None,
     tcp: bool = False,
+    line_baud: int | None = None,
     **settings: Any,
 ) -> Iterator[DriveUnderTest]:
     """A driver with its emulator behind a pty."""
@@ -152,28 +155,29 @@ def emulated(
     tcp_port = 0 if tcp else None
     if kind == "modbus":
         device = AbbDriveSettings(parameters={**SAFE_LOSS, **(parameters or {})})
-        serial = SerialSettings(drive=AbbDrivePort(device=device, tcp=tcp_port))
+        line = Line(baud=line_baud or 115200)
+        serial = SerialSettings(drive=AbbDrivePort(line=line, device=device, tcp=tcp_port))
     else:
-        line = Line(baud=19200, data_bits=7, parity="E")
+        line = Line(baud=line_baud or 19200, data_bits=7, parity="E")
         serial = SerialSettings(drive590=Drive590Port(line=line, tcp=tcp_port))
     (port,) = make_ports(serial, signals, tmp_path / "ports", seed=1).values()
     shaft = Shaft(signals)
     loop = Loop(context)
     with port:
-        common = {"port": port.address, "full_speed_rpm": FULL_SPEED_RPM, **settings}
+        common = {"port": port.address, "full_speed_rpm": FULL_SPEED_RPM, **PATIENCE, **settings}
         if kind == "modbus":
-            drive = ModbusDrive({"map": "../devices/abb_drives_profile.toml", **common}, context)
+            common = {"map": "../devices/abb_drives_profile.toml", **common}
+            drive = ModbusDrive(common, context)
         else:
-            drive = Eurotherm590Drive(
-                {"map": "../devices/eurotherm_590.toml", "baud": 19200, **common}, context
-            )
+            common = {"map": "../devices/eurotherm_590.toml", "baud": 19200, **common}
+            drive = Eurotherm590Drive(common, context)
         try:
             yield DriveUnderTest(
                 drive, context,
                 torque_on=lambda: bool(signals.get("drive_enabled")),
                 speed_set_rpm=lambda: float(signals.get("speed_set_rpm")),
                 close_relay=lambda closed: signals.set(relay_closed=closed),
-                loop=loop, port=port, signals=signals, shaft=shaft,
+                loop=loop, port=port, signals=signals, shaft=shaft, extra={"settings": common},
             )  # fmt: skip
         finally:
             drive.close()
