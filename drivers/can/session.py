@@ -128,13 +128,13 @@ class CanSession:
                 self._stop()
 
     def _start(self) -> None:
-        import can
-
         self.statistics = BusStatistics()
         self._failure = None
         self._consecutive_errors = 0
         self._own_sent, self._own_heard = {}, {}
         self._bus = open_bus(self.settings)
+        import can  # not before `open_bus`, which says it when it is missing
+
         wire_log_dir = self._context.wire_log_dir
         log_dir = wire_log_dir or (self._context.log_dir if self.settings.log_suffix else None)
         try:
