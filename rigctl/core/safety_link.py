@@ -29,8 +29,8 @@ class SafetySample:
     estop_ok, doors_ok : bool
         State of the hard-wired chain.
     channel_fault : str
-        What is wrong with the channel itself (silent bus or node, restart, second sender); empty when well. What
-        is not known then reads False.
+        What is wrong with the channel itself (silent bus or node, restart, second sender); empty when well.
+        What is not known then reads False.
     """
 
     k: int
