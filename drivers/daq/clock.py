@@ -24,7 +24,7 @@ Int = NDArray[np.int64]
 
 WINDOW_S = 10.0
 BIN_S = 0.5
-MIN_BINS = 4  # before that the nominal rate holds and only the offset is estimated
+MIN_BINS = 6  # before that the nominal rate holds and only the offset is estimated
 MAX_DRIFT = 0.01  # clocks further off are faults, and are reported as such by who uses the fit
 
 

@@ -19,7 +19,7 @@ from drivers.daq.source import Master
 from rigctl.core.errors import DeviceError
 from rigctl.core.units import NS_PER_S
 
-WARM_S = 0.5
+WARM_S = 0.5  # what a sound server does at its start says nothing of the clock
 # all callbacks of so long are late: frames are missing, and it is not a machine that was busy for a while
 GAP_SEEN_S = 2.0
 RATE_TOLERANCE = 0.005
@@ -103,6 +103,7 @@ class SoundTime:
         self._gap_limit_s = gap_limit_s
         self._max_drift_ppm = max_drift_ppm
         self._first: tuple[int, float] | None = None
+        self._settled = False
         self._newest: tuple[int, float] = (0, now_s)
         self._lateness: deque[tuple[float, float]] = deque()
         self.origin = 0
@@ -120,7 +121,7 @@ class SoundTime:
     @property
     def warm(self) -> bool:
         """See `RigTime`."""
-        return self._first is not None and self._newest[1] - self._first[1] >= WARM_S
+        return self._first is not None and self._newest[1] - self._first[1] >= 2.0 * WARM_S
 
     def update(self, now_s: float) -> None:
         """See `RigTime`."""
@@ -130,10 +131,16 @@ class SoundTime:
             if self._first is None:
                 self._first = (int(frames[0]), float(arrivals_s[0]))
             self._newest = (int(frames[-1]), float(arrivals_s[-1]))
-            if self._fit.ready:
+            if not self._settled and self._newest[1] - self._first[1] >= WARM_S:
+                self._settled = True
+                self._fit = ClockFit(self._master.rate_hz)
+            missing = False
+            if self._settled and self._fit.ready:
                 late = arrivals_s - self._fit.line.host_s(frames)
                 self._lateness.extend(zip(arrivals_s.tolist(), late.tolist(), strict=True))
-            self._fit.add(frames, arrivals_s)
+                missing = bool(late.min() > self._gap_limit_s)
+            if not missing:  # the fit must not follow a clock that has lost frames
+                self._fit.add(frames, arrivals_s)
             self._check_rate()
             self._check_gap()
         silent_s = now_s - self._master.last_arrival_s()

@@ -112,6 +112,7 @@ def acquisition(request, tmp_path, configs, sound):
     device.close()
     for link in links:
         link.close()
+    device._session._process.wait(20.0)
 
 
 def test_channels_are_those_of_the_rig(acquisition):
@@ -165,7 +166,7 @@ def test_values_are_those_of_the_devices(rig, sound):
         assert np.all(np.diff(counts) % 1000 == 1), "no frame lost or doubled"
         clocks = found[-1].status["clocks"]
         assert set(clocks) == {"microphone", "bridge", "shaft", "loop"}
-        assert abs(clocks["bridge"]["drift_ppm"]) < 500
+        assert abs(clocks["bridge"]["drift_ppm"]) < 2000  # a first guess after some seconds
         assert "bridge.clock" in device.identity()
         assert device.diagnose(3).round_trip_s
 
@@ -280,8 +281,11 @@ def test_sound_overflow_silence_unplugging_and_gaps_are_named(rig, sound):
 
 def test_a_sound_card_at_another_rate_is_found(rig, sound):
     sound.actual_hz = 44_100
-    with live(rig, {"microphone": MICROPHONE}) as (device, _):
-        until_error(device, "frames/s instead of 40000")
+    with (
+        pytest.raises(DeviceError, match="frames/s instead of 40000"),
+        live(rig, {"microphone": MICROPHONE}) as (device, _),
+    ):
+        blocks(device, 100)
 
 
 def test_missing_sound_devices_and_libraries_are_named(rig, sound, monkeypatch):
