@@ -13,7 +13,6 @@ from drivers.dc_drive.eurotherm_map import TagMap
 from drivers.dc_drive.polled import PolledDrive
 from drivers.dc_drive.settings import SerialDriveSettings, read_map, read_settings
 from rigctl.hal.devices import RigContext
-from rigctl.hal.wirelog import wire_log
 
 
 class Eurotherm590Settings(SerialDriveSettings):
@@ -34,6 +33,5 @@ class Eurotherm590Drive(PolledDrive):
     def __init__(self, settings: Mapping[str, Any], context: RigContext) -> None:
         checked = read_settings(Eurotherm590Settings, settings, context)
         tag_map = read_map(TagMap, checked.map, context)
-        log = wire_log(context, self.name, checked.port)
-        link = EurothermLink(checked, tag_map, checked.group, checked.unit, log)
+        link = EurothermLink(checked, tag_map, checked.group, checked.unit)
         super().__init__(link, context, port=checked.port, period_s=checked.period_s)

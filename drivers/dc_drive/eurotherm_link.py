@@ -37,13 +37,11 @@ DEMAND_STEP_PERCENT = 0.01
 class EurothermLink:
     """See `words.DriveLink`."""
 
-    def __init__(
-        self, settings: SerialDriveSettings, tag_map: TagMap, group: int, unit: int, log: WireLog
-    ) -> None:
+    def __init__(self, settings: SerialDriveSettings, tag_map: TagMap, group: int, unit: int) -> None:
         self._settings = settings
         self._map = tag_map
         self._group, self._unit = group, unit
-        self._log = log
+        self.log = WireLog(None)
         self._serial: Any = None  # pyserial types its Serial by platform
         self._exchanges = Exchanges(settings.deadline_s, self._settle)
         self._forget()
@@ -104,7 +102,7 @@ class EurothermLink:
             quiet_s = time.monotonic() + QUIET_S
             while time.monotonic() < min(until_s, quiet_s):
                 if port.in_waiting:
-                    self._log.received(port.read(port.in_waiting))
+                    self.log.received(port.read(port.in_waiting))
                     quiet_s = time.monotonic() + QUIET_S
                 time.sleep(0.003)
         except GONE:
@@ -120,7 +118,7 @@ class EurothermLink:
         answer = bytearray()
         try:
             port.reset_input_buffer()
-            self._log.sent(request)
+            self.log.sent(request)
             port.write(request)
             until_s = time.monotonic() + self._settings.reply_timeout_s
             while time.monotonic() < until_s:
@@ -129,7 +127,7 @@ class EurothermLink:
                     break
         except GONE as error:
             raise LinkError(f"the port is gone: {error}") from error
-        self._log.received(bytes(answer))
+        self.log.received(bytes(answer))
         if not answer:
             raise LinkError("no answer")
         return bytes(answer)

@@ -12,7 +12,6 @@ from drivers.dc_drive.modbus_map import RegisterMap
 from drivers.dc_drive.polled import PolledDrive
 from drivers.dc_drive.settings import SerialDriveSettings, read_map, read_settings
 from rigctl.hal.devices import RigContext
-from rigctl.hal.wirelog import wire_log
 
 
 class ModbusDriveSettings(SerialDriveSettings):
@@ -30,6 +29,5 @@ class ModbusDrive(PolledDrive):
     def __init__(self, settings: Mapping[str, Any], context: RigContext) -> None:
         checked = read_settings(ModbusDriveSettings, settings, context)
         register_map = read_map(RegisterMap, checked.map, context)
-        log = wire_log(context, self.name, checked.port)
-        link = ModbusLink(checked, register_map, checked.address, log)
+        link = ModbusLink(checked, register_map, checked.address)
         super().__init__(link, context, port=checked.port, period_s=checked.period_s)

@@ -54,13 +54,11 @@ class LoggedClient(ModbusSerialClient):
 class ModbusLink:
     """See `words.DriveLink`."""
 
-    def __init__(
-        self, settings: SerialDriveSettings, register_map: RegisterMap, address: int, log: WireLog
-    ) -> None:
+    def __init__(self, settings: SerialDriveSettings, register_map: RegisterMap, address: int) -> None:
         self._settings = settings
         self._map = register_map
         self._address = address
-        self._log = log
+        self.log = WireLog(None)
         self._client: LoggedClient | None = None
         self._exchanges = Exchanges(settings.deadline_s, self._settle)
         self._forget()
@@ -96,7 +94,7 @@ class ModbusLink:
             timeout=settings.reply_timeout_s,
             retries=0,
         )
-        client.wire_log = self._log
+        client.wire_log = self.log
         if not client.connect():
             raise LinkError(f"cannot open {port_path(settings.port)}")
         self._client = client
@@ -121,7 +119,7 @@ class ModbusLink:
             while time.monotonic() < min(until_s, quiet_s):
                 waiting = client.socket.in_waiting
                 if waiting:
-                    self._log.received(client.socket.read(waiting))
+                    self.log.received(client.socket.read(waiting))
                     quiet_s = time.monotonic() + QUIET_S
                 time.sleep(0.002)
         except OSError:

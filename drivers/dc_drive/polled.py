@@ -25,6 +25,7 @@ from rigctl.core.errors import DeviceError, RigctlError
 from rigctl.hal.bench_paths import port_hint
 from rigctl.hal.devices import RigContext
 from rigctl.hal.diagnosis import Diagnosis, Finding, Reading, measured
+from rigctl.hal.wirelog import wire_log
 
 LEASE_S = 0.25
 START_TIMEOUT_S = 1.5
@@ -53,6 +54,7 @@ class PolledDrive:
 
     def __init__(self, link: DriveLink, context: RigContext, *, port: str, period_s: float) -> None:
         self._link = link
+        self._context = context
         self._lease = context.lease
         self._board = context.board
         self._port = port
@@ -92,16 +94,17 @@ class PolledDrive:
         """
         self._reset_state()
         self._stop.clear()
+        self._link.log = wire_log(self._context, self.name, self._port)
         try:
             self._link.connect()
             self._identity = dict(self._link.identity())
             self._findings = self._link.findings()
             self._command_off()
         except LinkError as error:
-            self._link.disconnect()
+            self._hang_up()
             raise DeviceError(f"{error}.", place=self._place, remedy=port_hint(self._port)) from error
         except RigctlError:
-            self._link.disconnect()
+            self._hang_up()
             raise
         self._healthy = True
         self._opened_s = time.monotonic()
@@ -123,8 +126,12 @@ class PolledDrive:
                 self._command_off()
             except (LinkError, DeviceError):
                 pass  # it is gone or keeps its torque: its own supervision and the safety relay do the rest
-            self._link.disconnect()
+            self._hang_up()
         self._board.set(enabled=False)
+
+    def _hang_up(self) -> None:
+        self._link.disconnect()
+        self._link.log.close()
 
     def identity(self) -> Mapping[str, str]:
         """See `Device.identity`."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from rigctl.hal.diagnosis import Finding
+from rigctl.hal.wirelog import WireLog
 
 
 class LinkError(Exception):
@@ -74,7 +75,15 @@ class Trip:
 
 
 class DriveLink(Protocol):
-    """How to talk to one kind of drive. Used by one thread at a time. Every call raises `LinkError`."""
+    """How to talk to one kind of drive. Used by one thread at a time. Every call raises `LinkError`.
+
+    Attributes
+    ----------
+    log : WireLog
+        Where transfers are written; given anew with every opening.
+    """
+
+    log: WireLog
 
     @property
     def round_trips_s(self) -> Sequence[float]:

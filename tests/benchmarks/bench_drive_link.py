@@ -1,8 +1,8 @@
-"""Poll cycle and latency from set-point to wire of the serial drives, on their emulators behind ptys. By hand:
+"""Poll cycle and latency from set-point to wire of the serial drives, on emulators behind ptys. By hand:
 
     python tests/benchmarks/bench_drive_link.py [seconds]
 
-The ptys are paced like a wire: 10 bit times per character. Prints rates, round trips and latencies; asserts nothing.
+The ptys are paced like a wire: 10 bit times per character. Prints rates, round trips and latencies.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "contract"))
 
-from speed_drive_rigs import emulated, until  # noqa: E402
+from speed_drive_rigs import emulated, until
 
 CASES = (("modbus", 115200), ("modbus", 19200), ("eurotherm590", 19200), ("eurotherm590", 9600))
 
