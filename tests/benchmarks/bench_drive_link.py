@@ -55,9 +55,7 @@ def measure(kind: str, baud: int, seconds: float, folder: Path) -> None:
         cycles, start_s = drive._cycles, time.monotonic()
         time.sleep(seconds / 2)
         steady = (drive._cycles - cycles) / (time.monotonic() - start_s)
-        print(
-            f"{kind} at {baud} Bd: {steady:.1f} cycles/s steady, {with_changes:.1f} with a new set-point in each"
-        )
+        print(f"{kind} at {baud} Bd: {steady:.1f} cycles/s, {with_changes:.1f} while set-points change")
         print(f"   exchange              {_line(list(drive._link.round_trips_s))}")
         print(f"   set-point to the drive {_line(latencies_s)}  (n = {len(latencies_s)})")
         print(f"   retries {drive._link.retries}, CPU of driver, emulator and this loop {100 * cpu:.0f} %")
