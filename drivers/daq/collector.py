@@ -25,7 +25,7 @@ from drivers.daq.source import Source
 SETTLE_S = 0.02
 """Samples of counting clocks wait so long before they are numbered: what comes after them within this time
 tells a late sample from a lost one."""
-SUSPECT_S = 0.06
+SUSPECT_S = 0.09
 """... and so long where all later ones are late by a period or more: lost, or a stalled machine?"""
 THRESHOLD = 0.75  # share of a period
 WARM_S = 0.5

@@ -241,7 +241,12 @@ class UppPyrometer:
                 port.write(request)
                 self._log.sent(request)
                 answer = bytes(port.read_until(CR, LONGEST_ANSWER))
-            except (serial.SerialException, OSError, TypeError) as error:  # TypeError: closed under way
+            except (
+                serial.SerialException,
+                OSError,
+                termios.error,
+                TypeError,
+            ) as error:  # TypeError: closed under way
                 raise DeviceError(
                     f"the line is gone: {error}.", place=self.place, value=self.settings.port,
                     remedy=port_hint(self.settings.port),
