@@ -24,6 +24,7 @@ from rigctl.engine.engine import Engine
 from rigctl.engine.guard import Guard
 from rigctl.engine.state import Outcome, RunResult, Verb
 from rigctl.hal.devices import RigContext
+from rigctl.hal.priority import CONTROLLER, raise_priority
 from rigctl.recording.client import RecorderClient
 
 CONNECT_TIMEOUT_S = 60.0
@@ -91,6 +92,9 @@ class Controller:
             )
             gc.collect()
             gc.freeze()
+            if file.time == "real":
+                granted = raise_priority([os.getpid()], CONTROLLER)
+                self._journal.write("priority", granted=granted)
             result = engine.run()
             recorder.close()
             guard.close()

@@ -183,13 +183,20 @@ class SampleRing:
         return out
 
     def mean(self, name: str, start: int, stop: int) -> float:
-        """Mean of samples [start, stop) as acquired, without copying them; they must be written already."""
+        """Mean of samples [start, stop) as acquired, without copying them; they must be written already.
+
+        Samples that are not valid (NaN) do not count; NaN when none is valid.
+        """
         data = self._data[name]
         at, n = start % len(data), stop - start
         first = data[at : at + n]
         total = float(np.add.reduce(first, dtype=np.float64))
         if len(first) < n:
             total += float(np.add.reduce(data[: n - len(first)], dtype=np.float64))
+        if np.isnan(total):
+            both = np.concatenate([first, data[: n - len(first)]])
+            valid = both[~np.isnan(both)]
+            return float(valid.mean(dtype=np.float64)) if len(valid) else total
         return total / n
 
     def _wait(self, name: str, stop: int, timeout_s: float, keep_waiting: Callable[[], bool] | None) -> None:

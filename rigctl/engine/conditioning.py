@@ -128,6 +128,9 @@ class Conditioner:
         while block.end_s < deadline_s:
             power_w = block.mean(TORQUE) * block.mean(SPEED) * RAD_S_PER_RPM
             missing_k = aim_degc - (block.mean(DISC_TEMPERATURE) - self._flash_k_per_w * max(power_w, 0.0))
+            if math.isnan(missing_k):  # no valid reading in this block: hold; who judges sensors will act
+                block = yield
+                continue
             if missing_k <= 0.0:
                 break
             self._rig.pressure.set_pressure(full_bar * min(max(missing_k / TAPER_K, GENTLEST), 1.0))

@@ -19,6 +19,7 @@ from rigctl.engine.state import BreakOff, Progress
 from rigctl.hal.rig import Rig
 from sequences.braking import Braking, Conditioning
 
+LEAST_RAMP_RPM_S = 1e-6  # below it a profile is level but for rounding: no drive ramps that slowly
 REST_PRESSURE_BAR = 0.8
 REST_SPEED_RPM = 1.0
 RELEASE_TIMEOUT_S = 5.0
@@ -84,7 +85,7 @@ def course_of(
         start_rpm, end_rpm = braking.speed_setpoint_rpm(t_s), braking.speed_setpoint_rpm(t_s + dt_s)
         ramp = abs(end_rpm - start_rpm) / dt_s
         pressure_bar = braking.pressure_setpoint_bar(t_s + 0.5 * dt_s)
-        point = CoursePoint(dt_s, pressure_bar, end_rpm, ramp if ramp > 0.0 else ramp_rpm_per_s)
+        point = CoursePoint(dt_s, pressure_bar, end_rpm, ramp if ramp > LEAST_RAMP_RPM_S else ramp_rpm_per_s)
         last = points[-1] if points else None
         if (
             last is not None

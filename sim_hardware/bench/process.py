@@ -30,10 +30,10 @@ import can
 from rigctl.config.loading import load_model, translated
 from rigctl.core.errors import ConfigError, DeviceError, RigctlError
 from rigctl.hal.bench_paths import bench_folder
+from rigctl.hal.priority import BENCH, raise_priority
 from sim_hardware.bench import pulse
 from sim_hardware.bench.can import BenchCan
 from sim_hardware.bench.commands import CommandServer
-from sim_hardware.bench.priority import raise_priority
 from sim_hardware.bench.serial.bench import make_ports
 from sim_hardware.bench.serial.ports import SerialPort
 from sim_hardware.bench.settings import BenchSettings, load_bench
@@ -120,7 +120,7 @@ class Bench:
             gc.collect()
             gc.freeze()  # what lives now lives until the end: collections stay short
             if self.settings.realtime:  # before the threads start: they inherit it
-                self.priority = raise_priority([os.getpid(), *self._pulse_pids])
+                self.priority = raise_priority([os.getpid(), *self._pulse_pids], BENCH)
             while bus.recv(0) is not None:  # devices do not hear what was said before they had power
                 pass
             self._can = BenchCan(bus, self.signals, self.settings.can)

@@ -456,8 +456,8 @@ def test_after_a_trip_nobody_acknowledged_the_next_watchdog_stays_locked(bench: 
 
 @pytest.mark.parametrize("own_process", [False, True])
 def test_real_time_heartbeat_by_the_wall_clock(own_process: bool) -> None:
-    edits = {"heartbeat_s = 0.08": "heartbeat_s = 0.30", "heartbeat_s = 0.15": "heartbeat_s = 0.30",
-             "sample_s = 0.12": "sample_s = 1.0", "sample_s = 0.20": "sample_s = 1.0",
+    edits = {"heartbeat_s = 0.14": "heartbeat_s = 0.30", "heartbeat_s = 0.15": "heartbeat_s = 0.30",
+             "sample_s = 0.18": "sample_s = 1.0", "sample_s = 0.20": "sample_s = 1.0",
              "heartbeat_s = 3.0": "heartbeat_s = 3.0"}  # fmt: skip
     with Bench(own_process=own_process, clock="real", edits=edits) as bench:
         bench.start().arm()

@@ -90,3 +90,12 @@ def test_channel_data_scales_and_keeps_time():
     assert SPECS[0].is_counts
     assert not SPECS[1].is_counts
     assert ChannelSpec(**SPECS[0].to_mapping()) == SPECS[0]
+
+
+def test_samples_that_are_not_valid_do_not_count_in_a_mean(tmp_path: Path) -> None:
+    ring = SampleRing.create(tmp_path / "ring", [ChannelSpec("torque", "N·m", 10.0)], seconds=1.0)
+    ring.write("torque", np.array([1.0, np.nan, 3.0, np.nan, np.nan, 8.0, 2.0], np.float32))
+    assert ring.mean("torque", 0, 3) == 2.0
+    assert np.isnan(ring.mean("torque", 3, 5))
+    ring.write("torque", np.array([4.0, np.nan, 6.0, np.nan, 5.0], np.float32))  # over the end of the ring
+    assert ring.mean("torque", 5, 12) == 5.0
