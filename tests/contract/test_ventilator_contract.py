@@ -94,6 +94,7 @@ def test_full_air_when_the_control_loop_stands_still(wire):
 def test_full_air_when_our_frames_are_lost(wire):
     opened(wire).set_flow(0.0)
     assert reaches(wire, 0.0)
+    wire.run_until(lambda: False, 0.4)  # a node watches our heartbeat from the first one it has heard
     wire.inject(kind="drop", node=OUTPUT, direction="to_node")
     assert reaches(wire, FULL_M3_H, 2.0)
 
