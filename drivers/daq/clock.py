@@ -47,10 +47,6 @@ class Line:
         """Sample numbers (with fractions) at host times."""
         return (host_s - self.t0_s) / self.period_s
 
-    def number_at(self, host_s: float) -> float:
-        """Sample number (with fraction) at one host time."""
-        return (host_s - self.t0_s) / self.period_s
-
 
 class ClockFit:
     """Online fit of a counting clock.

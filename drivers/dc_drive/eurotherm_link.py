@@ -12,14 +12,14 @@ from __future__ import annotations
 import itertools
 import termios
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar
 
 import serial
 
 from drivers.dc_drive import bisynch
 from drivers.dc_drive.eurotherm_map import TagMap
-from drivers.dc_drive.exchange import Exchanges
+from drivers.dc_drive.exchange import Exchanges, ExchangeStatistics
 from drivers.dc_drive.profile import has
 from drivers.dc_drive.settings import SerialDriveSettings
 from drivers.dc_drive.words import DriveState, LinkError, Refused, Report, Torque, Trip, Wish
@@ -34,7 +34,7 @@ GONE = (OSError, termios.error)
 DEMAND_STEP_PERCENT = 0.01
 
 
-class EurothermLink:
+class EurothermLink(ExchangeStatistics):
     """See `words.DriveLink`."""
 
     def __init__(self, settings: SerialDriveSettings, tag_map: TagMap, group: int, unit: int) -> None:
@@ -52,16 +52,6 @@ class EurothermLink:
         self._sequence = 0
         self._status = self._health = 0
         self._turn: Iterator[str] = itertools.cycle(("status", "health", "status", "demand"))
-
-    @property
-    def round_trips_s(self) -> Sequence[float]:
-        """See `DriveLink`."""
-        return self._exchanges.round_trips_s
-
-    @property
-    def retries(self) -> int:
-        """See `DriveLink`."""
-        return self._exchanges.retries
 
     # -- port ---------------------------------------------------------------------------------------
 

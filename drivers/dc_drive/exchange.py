@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from drivers.dc_drive.words import LinkError, Refused
@@ -58,3 +58,19 @@ class Exchanges:
                 continue
             self.round_trips_s.append(time.monotonic() - start_s)
             return result
+
+
+class ExchangeStatistics:
+    """The statistics that a `DriveLink` tells, from its exchanges."""
+
+    _exchanges: Exchanges
+
+    @property
+    def round_trips_s(self) -> Sequence[float]:
+        """See `DriveLink`."""
+        return self._exchanges.round_trips_s
+
+    @property
+    def retries(self) -> int:
+        """See `DriveLink`."""
+        return self._exchanges.retries

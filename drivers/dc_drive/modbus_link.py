@@ -19,7 +19,7 @@ from pymodbus.client import ModbusSerialClient
 from pymodbus.exceptions import ModbusException
 from pymodbus.pdu import ModbusPDU
 
-from drivers.dc_drive.exchange import Exchanges
+from drivers.dc_drive.exchange import Exchanges, ExchangeStatistics
 from drivers.dc_drive.modbus_map import FIRST_HOLDING, Action, Register, RegisterMap
 from drivers.dc_drive.profile import control_word, drive_state, has
 from drivers.dc_drive.settings import SerialDriveSettings
@@ -51,7 +51,7 @@ class LoggedClient(ModbusSerialClient):
         return data
 
 
-class ModbusLink:
+class ModbusLink(ExchangeStatistics):
     """See `words.DriveLink`."""
 
     def __init__(self, settings: SerialDriveSettings, register_map: RegisterMap, address: int) -> None:
@@ -68,16 +68,6 @@ class ModbusLink:
         self._control = self._map.control_words.coast
         self._ramp_written: float | None = None
         self._long_read = False
-
-    @property
-    def round_trips_s(self) -> Sequence[float]:
-        """See `DriveLink`."""
-        return self._exchanges.round_trips_s
-
-    @property
-    def retries(self) -> int:
-        """See `DriveLink`."""
-        return self._exchanges.retries
 
     # -- port ---------------------------------------------------------------------------------------
 

@@ -14,9 +14,10 @@ from rigctl.core.errors import ConfigError
 from rigctl.core.registry import Registry
 from rigctl.hal.devices import RigContext
 from rigctl.hal.rig import Rig
+from rigctl.model.loading import read_brake_file
 from sequences.check import CheckResult, check_program
 from sequences.program import Program, load_program
-from sim_hardware.brake_model import Brake, BrakeSpec, Prediction, load_brake, predict
+from sim_hardware.brake_model import Prediction, predict
 
 _BUILT_IN = {
     ("drive", "simulated"): "sim_hardware.devices.roles:SimulatedDrive",
@@ -63,19 +64,6 @@ def read_rig(path: Path) -> RigConfig:
         Names file, key, value and remedy.
     """
     return load_model(path, RigConfig)
-
-
-def read_brake(path: Path) -> Brake:
-    """Load a brake file.
-
-    Raises
-    ------
-    ConfigError
-        Names file, key, value and remedy.
-    """
-    with translated(path, model=BrakeSpec):
-        return load_brake(path)
-    raise AssertionError  # `translated` has raised
 
 
 def build_rig(config: RigConfig, context: RigContext) -> Rig:
@@ -142,4 +130,4 @@ def prediction_of(path: Path) -> Prediction:
     ConfigError
         The brake file is wrong.
     """
-    return predict(read_brake(path))
+    return predict(read_brake_file(path))

@@ -11,14 +11,14 @@ from pathlib import Path
 from rich.console import Console
 
 from rigctl.app import exit_codes
-from rigctl.app.compose import read_brake
+from rigctl.model.loading import read_brake_file
 from sim_hardware.brake_model import predict
 from sim_hardware.brake_model.stability import EigenPair
 
 
 def show_stability(path: Path, k: float | None, mu: float | None, max_bar: float, console: Console) -> int:
     """Print pairs of eigenvalues without pressure and at the highest pressure, and the onset."""
-    found = predict(read_brake(path), mu, k, max_bar)
+    found = predict(read_brake_file(path), mu, k, max_bar)
     console.print(
         f"{found.brake}: mu = {found.mu:g}, k = {found.slope_s_m:g} s/m, p = 0 … {max_bar:g} bar",
         highlight=False,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import ValidationError
@@ -16,12 +17,27 @@ from pydantic import ValidationError
 from rigctl.config.loading import translated
 from rigctl.core.errors import ConfigError
 from sim_hardware.brake_model.assembly import Brake, load_brake
-from sim_hardware.brake_model.linear import LinearModel
 from sim_hardware.brake_model.spec import BrakeSpec
+
+if TYPE_CHECKING:
+    from sim_hardware.brake_model.linear import LinearModel
+
+
+def read_brake_file(path: Path) -> Brake:
+    """Load a brake file, whatever its name.
+
+    Raises
+    ------
+    ConfigError
+        names file, key, value and remedy
+    """
+    with translated(path, model=BrakeSpec):
+        return load_brake(path)
+    raise AssertionError  # `translated` has raised
 
 
 def read_brake(path: Path) -> Brake:
-    """Load a brake file.
+    """Load a brake file for a study that needs bodies and contacts; matrices are refused by their name.
 
     Raises
     ------
@@ -34,9 +50,7 @@ def read_brake(path: Path) -> Brake:
             place=str(path),
             remedy="Name a brake file, for example configs/brakes/model.toml.",
         )
-    with translated(path, model=BrakeSpec):
-        return load_brake(path)
-    raise AssertionError  # `translated` has raised
+    return read_brake_file(path)
 
 
 def read_model(path: Path) -> LinearModel:

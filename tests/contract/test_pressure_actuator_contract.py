@@ -19,20 +19,6 @@ from sim_hardware.bench.can import BenchCanSettings
 from sim_hardware.bench.can.settings import RegulatorSettings
 
 
-@pytest.fixture(params=["emulated", "simulated"])
-def world(request, tmp_path):
-    made = EmulatedWorld(tmp_path) if request.param == "emulated" else SimulatedWorld(tmp_path)
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def wire(tmp_path):
-    made = EmulatedWorld(tmp_path)
-    yield made
-    made.close()
-
-
 def opened(world, **changes):
     actuator = world.pressure(**changes)
     actuator.open()

@@ -5,27 +5,13 @@ from __future__ import annotations
 import math
 
 import pytest
-from can_worlds import OUTPUT, EmulatedWorld, SimulatedWorld
+from can_worlds import OUTPUT, EmulatedWorld
 
 from rigctl.core.errors import DeviceError
 from sim_hardware.bench.can import BenchCanSettings
 from sim_hardware.bench.can.settings import AnalogOutputSettings
 
 FULL_M3_H = 1000.0
-
-
-@pytest.fixture(params=["emulated", "simulated"])
-def world(request, tmp_path):
-    made = EmulatedWorld(tmp_path) if request.param == "emulated" else SimulatedWorld(tmp_path)
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def wire(tmp_path):
-    made = EmulatedWorld(tmp_path)
-    yield made
-    made.close()
 
 
 def opened(world, **changes):

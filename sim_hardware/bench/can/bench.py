@@ -21,7 +21,7 @@ from rigctl.core.errors import ConfigError, DeviceError
 from sim_hardware.bench.can import loopback
 from sim_hardware.bench.can.faults import FaultRule, FrameFaults
 from sim_hardware.bench.can.frames import HIGHEST_COB_ID, Frame
-from sim_hardware.bench.can.node import Device, NmtState, Node
+from sim_hardware.bench.can.node import Device, Node
 from sim_hardware.bench.can.nodes.amplifier import Amplifier
 from sim_hardware.bench.can.nodes.analog_output import AnalogOutput
 from sim_hardware.bench.can.nodes.current_input import CurrentInput
@@ -407,8 +407,3 @@ def _make_devices(settings: BenchCanSettings, signals: RigSignals) -> dict[str, 
         "analog_output": lambda: AnalogOutput(settings.analog_output, signals),
     }
     return {name: makers[name]() for name in NODE_NAMES if getattr(settings, name).present}
-
-
-def all_operational(bench: BenchCan) -> bool:
-    """Whether every node of the bench is operational."""
-    return all(node.state is NmtState.OPERATIONAL for node in bench.nodes.values())

@@ -131,10 +131,6 @@ class Locus:
         """The first crossing along the grid that makes a mode unstable."""
         return next((c for c in self.crossings if c.destabilising), None)
 
-    def mode_near(self, frequency_hz: float, index: int = 0) -> int:
-        """Number of the mode nearest to a frequency at a grid point."""
-        return int(np.nanargmin(np.abs(self.frequencies_hz[index] - frequency_hz))) + 1
-
 
 def checked_grid(grid: Sequence[float] | Array) -> Array:
     """Return a grid as an array (g,).

@@ -20,7 +20,6 @@ _DEGREES = (1, 2, 6)
 #: largest deviation of such a polynomial from the model's own matrices, relative to their largest entry
 _EXACT = 2e-13
 _EXACT_RATE = 1e-9
-_SIDES = ("leading", "trailing")
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,12 +61,6 @@ class Trajectory:
         """Length."""
         return self.phases[-1].end_s
 
-    @property
-    def events_s(self) -> Array:
-        """Times at which the kind of motion changes."""
-        pairs = zip(self.phases, self.phases[1:], strict=False)
-        return np.array([first.end_s for first, then in pairs if first.kind != then.kind])
-
     def share(self, kind: Kind) -> float:
         """Part of the time spent in a kind of motion."""
         return (
