@@ -1,0 +1,1 @@
+"""What is always visible: state bar, navigation, alarm bar with STOP."""

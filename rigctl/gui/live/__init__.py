@@ -1,0 +1,1 @@
+"""Live signals: rolling envelopes, spectra and levels of what the acquisition writes into the ring."""

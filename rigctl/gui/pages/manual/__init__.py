@@ -1,0 +1,1 @@
+"""Page manual of the window."""

@@ -1,0 +1,1 @@
+"""Page model of the window."""

@@ -1,0 +1,1 @@
+"""Page run of the window."""

@@ -1,0 +1,1 @@
+"""Page sequence of the window."""

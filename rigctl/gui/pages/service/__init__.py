@@ -1,0 +1,1 @@
+"""Page service of the window."""

@@ -1,0 +1,1 @@
+"""The connection to a controller, and what the window makes of its news."""
