@@ -26,7 +26,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="rigctl gui", description="The operator's window.")
     parser.add_argument("--data", type=Path, default=Path("data"), help="folder of the campaigns [data]")
     parser.add_argument(
-        "--configs", type=Path, default=Path("configs"), help="folder of rigs, brakes, programs"
+        "--configs", type=Path, default=Path("configs"), help="folder of rigs, programs [configs]"
     )
     parser.add_argument("--language", choices=LANGUAGES, help="[system's]")
     parser.add_argument("--theme", choices=("light", "dark"), help="[as left]")

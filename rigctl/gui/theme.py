@@ -1,8 +1,9 @@
 """Colours, sizes and fonts of the window: one set of tokens, light and dark.
 
-Job: the tokens, the style sheet made of them, pyqtgraph's colours, and the news that they have changed. Grey while all
-is well; blue for set-points and selection, amber for a warning, red for an alarm or trip, green only for "none measured,
-test passed". Contrast of text is at least 4.5 : 1 (WCAG 2.1, 1.4.3; tested). Not its job: layout.
+Job: the tokens, the style sheet made of them, pyqtgraph's colours, and the news that they have changed. Grey
+while all is well; blue for set-points and selection, amber for a warning, red for an alarm or trip, green only
+for "none measured, test passed". Contrast of text is at least 4.5 : 1 (WCAG 2.1, 1.4.3; tested). Not its job:
+layout.
 """
 
 from __future__ import annotations
@@ -58,16 +59,20 @@ class Theme:
 
 
 LIGHT = Theme(
-    name="light", window="#e9eaec", panel="#f6f7f8", field="#ffffff", line="#b9bdc3", text="#1d2127", muted="#555c66",
+    name="light", window="#e9eaec", panel="#f6f7f8", field="#ffffff", line="#b9bdc3",
+    text="#1d2127", muted="#555c66",
     blue="#1f5fae", on_blue="#ffffff", amber="#f2b632", on_amber="#2b2100", red="#c3202b", on_red="#ffffff",
     green="#1e7145", plot="#ffffff", plot_line="#8a9099",
-    pressure="#2b2f36", torque="#6a4c93", speed="#33707a", temperature="#8a5a2b", friction="#4a5a2f", sound="#3c4654",
+    pressure="#2b2f36", torque="#6a4c93", speed="#33707a", temperature="#8a5a2b", friction="#4a5a2f",
+    sound="#3c4654",
 )  # fmt: skip
 DARK = Theme(
-    name="dark", window="#202327", panel="#2a2e33", field="#191c1f", line="#4a5058", text="#e7e9ec", muted="#a4abb5",
+    name="dark", window="#202327", panel="#2a2e33", field="#191c1f", line="#4a5058",
+    text="#e7e9ec", muted="#a4abb5",
     blue="#7db1f2", on_blue="#10161d", amber="#f2b632", on_amber="#2b2100", red="#ff6b6b", on_red="#1d0507",
     green="#67c58f", plot="#16181b", plot_line="#737a84",
-    pressure="#d6d9de", torque="#b79ae0", speed="#79c0cc", temperature="#d9a26b", friction="#b3c782", sound="#b4bfcd",
+    pressure="#d6d9de", torque="#b79ae0", speed="#79c0cc", temperature="#d9a26b", friction="#b3c782",
+    sound="#b4bfcd",
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 
@@ -129,7 +134,8 @@ def _palette(t: Theme) -> QPalette:
     for role, colour in {
         roles.Window: t.window, roles.WindowText: t.text, roles.Base: t.field, roles.AlternateBase: t.panel,
         roles.Text: t.text, roles.Button: t.panel, roles.ButtonText: t.text, roles.ToolTipBase: t.field,
-        roles.ToolTipText: t.text, roles.Highlight: t.blue, roles.HighlightedText: t.on_blue, roles.Link: t.blue,
+        roles.ToolTipText: t.text, roles.Highlight: t.blue, roles.HighlightedText: t.on_blue,
+        roles.Link: t.blue,
         roles.PlaceholderText: t.muted, roles.Mid: t.line, roles.Dark: t.line,
     }.items():  # fmt: skip
         palette.setColor(role, QColor(colour))
@@ -147,25 +153,28 @@ def style_sheet(t: Theme, scale: float) -> str:
     QLabel[look="muted"] {{ color: {t.muted}; }}
     QLabel[look="error"] {{ color: {t.red}; }}
     QLabel[look="warning"] {{ background: {t.amber}; color: {t.on_amber}; padding: 2px {u // 2}px; }}
-    QLabel[look="alarm"] {{ background: {t.red}; color: {t.on_red}; padding: 2px {u // 2}px; font-weight: bold; }}
-    QPushButton {{ padding: {u // 2}px {u}px; min-height: {2 * u}px; border: 1px solid {t.line}; border-radius: 3px;
-        background: {t.panel}; }}
+    QLabel[look="alarm"] {{ background: {t.red}; color: {t.on_red}; padding: 2px {u // 2}px;
+        font-weight: bold; }}
+    QPushButton {{ padding: {u // 2}px {u}px; min-height: {2 * u}px; border: 1px solid {t.line};
+        border-radius: 3px; background: {t.panel}; }}
     QPushButton:hover {{ border-color: {t.blue}; }}
     QPushButton:focus {{ border: 2px solid {t.blue}; }}
     QPushButton:pressed, QPushButton:checked {{ background: {t.blue}; color: {t.on_blue}; }}
     QPushButton:disabled {{ color: {t.plot_line}; }}
     QPushButton[look="primary"] {{ background: {t.blue}; color: {t.on_blue}; font-weight: bold; }}
     QPushButton[look="primary"]:disabled {{ background: {t.panel}; color: {t.plot_line}; }}
-    QPushButton[look="stop"] {{ background: {t.red}; color: {t.on_red}; font-weight: bold; font-size: {1.4 * scale:.2f}em;
-        min-width: {18 * u}px; min-height: {5 * u}px; border: 2px solid {t.text}; }}
+    QPushButton[look="stop"] {{ background: {t.red}; color: {t.on_red}; font-weight: bold;
+        font-size: {round(14 * scale)}pt; min-width: {18 * u}px; min-height: {5 * u}px; border: 2px solid {t.text}; }}
     QPushButton[look="nav"] {{ text-align: left; border: none; border-radius: 0; background: transparent;
         padding: {u}px {2 * u}px; min-height: {3 * u}px; }}
     QPushButton[look="nav"]:hover {{ background: {t.panel}; }}
-    QPushButton[look="nav"]:checked {{ background: {t.panel}; color: {t.text}; border-left: 4px solid {t.blue};
-        font-weight: bold; }}
-    QLineEdit, QAbstractSpinBox, QComboBox, QPlainTextEdit, QTextEdit {{ background: {t.field}; color: {t.text};
-        border: 1px solid {t.line}; border-radius: 2px; padding: {u // 4}px {u // 2}px; min-height: {2 * u + u // 2}px; }}
-    QLineEdit:focus, QAbstractSpinBox:focus, QComboBox:focus, QPlainTextEdit:focus {{ border: 2px solid {t.blue}; }}
+    QPushButton[look="nav"]:checked {{ background: {t.panel}; color: {t.text}; font-weight: bold;
+        border-left: 4px solid {t.blue}; }}
+    QLineEdit, QAbstractSpinBox, QComboBox, QPlainTextEdit, QTextEdit {{ background: {t.field};
+        color: {t.text}; border: 1px solid {t.line}; border-radius: 2px; padding: {u // 4}px {u // 2}px;
+        min-height: {2 * u + u // 2}px; }}
+    QLineEdit:focus, QAbstractSpinBox:focus, QComboBox:focus, QPlainTextEdit:focus {{
+        border: 2px solid {t.blue}; }}
     QLineEdit[wrong="true"], QAbstractSpinBox[wrong="true"], QPlainTextEdit[wrong="true"] {{
         border: 2px solid {t.red}; }}
     QTableView, QTreeView, QListView {{ background: {t.field}; alternate-background-color: {t.panel};
@@ -177,7 +186,8 @@ def style_sheet(t: Theme, scale: float) -> str:
     QGroupBox::title {{ subcontrol-origin: margin; left: {u}px; color: {t.muted}; }}
     QSplitter::handle {{ background: {t.line}; }}
     QToolTip {{ background: {t.field}; color: {t.text}; border: 1px solid {t.line}; padding: {u // 2}px; }}
-    QProgressBar {{ border: 1px solid {t.line}; background: {t.field}; text-align: center; border-radius: 2px; }}
+    QProgressBar {{ border: 1px solid {t.line}; background: {t.field}; text-align: center;
+        border-radius: 2px; }}
     QProgressBar::chunk {{ background: {t.muted}; }}
     QTabBar::tab {{ padding: {u // 2}px {2 * u}px; border: 1px solid {t.line}; background: {t.window};
         color: {t.muted}; }}

@@ -1,4 +1,4 @@
-"""Tests of the window: offscreen unless a display is asked for; no Qt warning, no thread or timer left behind."""
+"""Tests of the window: offscreen unless a display is asked for; no Qt warning, no thread left behind."""
 
 import os
 import threading
@@ -40,7 +40,7 @@ def nothing_left(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture
 def services(qapp: QApplication, theme: ThemeKeeper, tmp_path: Path) -> Iterator[Services]:
-    """Services without a rig; `services.shown` lists the calls of navigate, `services.news` those of notify."""
+    """Services without a rig; `services.shown`: calls of navigate, `services.news`: of notify."""
     settings = QSettings(str(tmp_path / "window.ini"), QSettings.Format.IniFormat)
     rig, work = RigConnection(), Work()
     shown: list[tuple[str, dict]] = []

@@ -125,10 +125,15 @@ class StateBar(QWidget):
         self.kind.setVisible(state.simulated is not None)
         self.kind.setText(self.tr("SIMULATED") if state.simulated else self.tr("REAL RIG"))
         words = {
-            Word.OFFLINE: self.tr("OFFLINE"), Word.STARTING: self.tr("STARTING"), Word.LOCKED: self.tr("LOCKED"),
-            Word.READY: self.tr("READY"), Word.RUNNING: self.tr("RUNNING"), Word.PAUSED: self.tr("PAUSED"),
-            Word.STOPPING: self.tr("STOPPING"), Word.TRIPPED: self.tr("TRIPPED"),
-        }  # fmt: skip
+            Word.OFFLINE: self.tr("OFFLINE"),
+            Word.STARTING: self.tr("STARTING"),
+            Word.LOCKED: self.tr("LOCKED"),
+            Word.READY: self.tr("READY"),
+            Word.RUNNING: self.tr("RUNNING"),
+            Word.PAUSED: self.tr("PAUSED"),
+            Word.STOPPING: self.tr("STOPPING"),
+            Word.TRIPPED: self.tr("TRIPPED"),
+        }
         self.word.setText(("▲ " if state.word is Word.TRIPPED else "") + words[state.word])
         self._paint_word(state)
         cause = state.cause
@@ -153,7 +158,7 @@ class StateBar(QWidget):
 
 
 class RigFrame(QWidget):
-    """Border around the whole window: solid for a real rig, hatched for a simulated one, none without a rig."""
+    """Border around the window: solid for a real rig, hatched for a simulated one, none without."""
 
     def __init__(self, theme: ThemeKeeper) -> None:
         super().__init__()

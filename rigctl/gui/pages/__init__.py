@@ -34,13 +34,15 @@ class PageEntry:
         return getattr(importlib.import_module(module), name)(services)
 
 
-PAGES = (
-    PageEntry("manual", QT_TRANSLATE_NOOP("pages", "Manual"), "rigctl.gui.pages.manual.page:ManualPage"),
-    PageEntry(
-        "sequence", QT_TRANSLATE_NOOP("pages", "Sequence"), "rigctl.gui.pages.sequence.page:SequencePage"
-    ),
-    PageEntry("run", QT_TRANSLATE_NOOP("pages", "Run"), "rigctl.gui.pages.run.page:RunPage"),
-    PageEntry("data", QT_TRANSLATE_NOOP("pages", "Data"), "rigctl.gui.pages.data.page:DataPage"),
-    PageEntry("model", QT_TRANSLATE_NOOP("pages", "Model"), "rigctl.gui.pages.model.page:ModelPage"),
-    PageEntry("service", QT_TRANSLATE_NOOP("pages", "Service"), "rigctl.gui.pages.service.page:ServicePage"),
+_TITLES = (  # QT_TRANSLATE_NOOP marks them for lupdate
+    ("manual", QT_TRANSLATE_NOOP("pages", "Manual")),
+    ("sequence", QT_TRANSLATE_NOOP("pages", "Sequence")),
+    ("run", QT_TRANSLATE_NOOP("pages", "Run")),
+    ("data", QT_TRANSLATE_NOOP("pages", "Data")),
+    ("model", QT_TRANSLATE_NOOP("pages", "Model")),
+    ("service", QT_TRANSLATE_NOOP("pages", "Service")),
+)
+PAGES = tuple(
+    PageEntry(page_id, str(title), f"rigctl.gui.pages.{page_id}.page:{page_id.capitalize()}Page")
+    for page_id, title in _TITLES
 )

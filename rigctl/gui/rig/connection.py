@@ -13,7 +13,7 @@ class RigConnection(QObject):
     stateChanged = Signal(object)
     """RigState, at most ten times a second and with every change of its word."""
     recordsAdded = Signal(list)
-    """Newly read records of the campaign's journal (`rigctl.core.journal.Record`); on attaching all of them."""
+    """Newly read records of the campaign's journal (`rigctl.core.journal.Record`); first all."""
     attached = Signal(object)
     """Session that the window watches now."""
     detached = Signal(str)

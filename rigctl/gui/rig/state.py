@@ -1,7 +1,7 @@
-"""What the window believes about the rig: one immutable value, made from the controller's news and the journal.
+"""What the window believes about the rig: one immutable value, made from controller and journal.
 
-Job: the words of the state bar and the reasons behind them. Plain data, no Qt: tested without a screen. Not its job:
-where the news come from (`rigctl.gui.rig.connection`).
+Job: the words of the state bar and the reasons behind them. Plain data, no Qt: tested without a screen.
+Not its job: where the news come from (`rigctl.gui.rig.connection`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Word(StrEnum):
 
 @dataclass(frozen=True)
 class SafetyCause:
-    """First-out cause of a trip: what, and what to do next, in plain words; time as in the journal (UTC ISO)."""
+    """First-out cause of a trip: what, and what to do next, in plain words; time as in the journal."""
 
     words: str
     remedy: str = ""
