@@ -4,113 +4,32 @@ them.
 The brake file gives points from each body's centre of mass and says which of them are coupled. Bodies are
 placed so that coupled points meet (friction contacts and bodies that can turn decide; of bodies that only
 shift, points have no meaning and are drawn where their partners are). Then bodies are drawn a little apart,
-so that springs are seen. Generic: any topology that the brake file allows. NOT its job: painting
-(`brake_painting`, `brake_page`), mechanics.
+so that springs are seen. Generic: any topology that the brake file allows. NOT its job: what a drawing is
+(`drawn_brake`), painting (`brake_painting`, `brake_page`), mechanics.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigctl.model.drawn_brake import Drawing, DrawnBody, DrawnSpring, Role, displaced, scale_for
 from sim_hardware.brake_model.eigen.mode_shapes import point_coordinates
 from sim_hardware.brake_model.linear import value_of
 from sim_hardware.brake_model.parametric import LinearBrake
 from sim_hardware.brake_model.spec import Contact, Spring
 
+__all__ = ["Drawing", "DrawnBody", "DrawnSpring", "displaced", "draw_brake", "scale_for"]
+
 Array = NDArray[np.float64]
-Role = Literal["disc", "pad", "body"]
 #: distance between coupled bodies on the drawing, relative to its width
 _GAP = 0.05
 _LOOSE = 1e-3
 _ROUND = np.array([[np.cos(a), np.sin(a)] for a in np.arange(0.0, 2 * np.pi, np.pi / 6)])
-
-
-@dataclass(frozen=True, slots=True)
-class DrawnBody:
-    """A body: its parts move together.
-
-    Attributes
-    ----------
-    centre : (2,) where its centre of mass is drawn, m
-    parts : outlines (k, 2) of its solid parts
-    bridge : outline (k, 2) of what joins several parts behind the others, or None
-    label : (2,) where its name stands
-    """
-
-    name: str
-    role: Role
-    centre: Array
-    parts: tuple[Array, ...]
-    bridge: Array | None
-    label: Array
-
-
-@dataclass(frozen=True, slots=True)
-class DrawnSpring:
-    """A spring from a point of one body to a point of another, or of the ground ("").
-
-    Attributes
-    ----------
-    coupling : name of the coupling element; one may be drawn as several springs
-    first, second : (body, (2,) place)
-    kind : "contact", "spring" or "torsion"
-    """
-
-    coupling: str
-    first: tuple[str, Array]
-    second: tuple[str, Array]
-    kind: Literal["contact", "spring", "torsion"]
-
-
-@dataclass(frozen=True, slots=True)
-class Drawing:
-    """A whole brake, m.
-
-    Attributes
-    ----------
-    box : (x from, x to, y from, y to) of everything at rest
-    """
-
-    bodies: tuple[DrawnBody, ...]
-    springs: tuple[DrawnSpring, ...]
-    box: tuple[float, float, float, float]
-
-    def body(self, name: str) -> DrawnBody:
-        """The body of that name."""
-        return next(body for body in self.bodies if body.name == name)
-
-    @property
-    def size(self) -> float:
-        """Diagonal of the box."""
-        return float(np.hypot(self.box[1] - self.box[0], self.box[3] - self.box[2]))
-
-
-def displaced(
-    points: Array, centre: Array, motion: NDArray[np.complex128], phase_rad: float, scale: float
-) -> Array:
-    """Points (k, 2) of a rigid body moved by Re(motion e^(i phase)) times scale; motion: complex (x, y,
-    phi).
-    """
-    x, y, phi = (motion * np.exp(1j * phase_rad)).real * scale
-    arm = points - centre
-    return points + np.column_stack([x - phi * arm[:, 1], y + phi * arm[:, 0]])  # eq 10
-
-
-def scale_for(drawing: Drawing, motions: Mapping[str, NDArray[np.complex128]], share: float = 0.03) -> float:
-    """Scale at which the point that moves most moves by a share of the drawing's size."""
-    largest = 0.0
-    for body in drawing.bodies:
-        x, y, phi = motions.get(body.name, np.zeros(3, dtype=complex))
-        arm = np.concatenate(body.parts) - body.centre
-        u, v = x - phi * arm[:, 1], y + phi * arm[:, 0]
-        square = 0.5 * (np.abs(u) ** 2 + np.abs(v) ** 2 + np.abs(u * u + v * v))
-        largest = max(largest, float(np.sqrt(square.max())))
-    return share * drawing.size / largest if largest > 0 else 0.0
 
 
 def draw_brake(model: LinearBrake, values: Mapping[str, float] | None = None) -> Drawing:

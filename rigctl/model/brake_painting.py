@@ -6,8 +6,6 @@ NOT its job: where bodies stand (`brake_drawing`), the page with its own animati
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from io import BytesIO
 
 import numpy as np
@@ -18,36 +16,34 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from rigctl.analysis.style import GREY, INK, TITLE, VERMILION, drawing, new_figure
-from rigctl.model.brake_drawing import Drawing, DrawnBody, DrawnSpring, displaced
+from rigctl.model.drawn_brake import (
+    Drawing,
+    DrawnBody,
+    DrawnSpring,
+    Motions,
+    displaced,
+    ground_path,
+    label_of,
+    spring_path,
+)
+
+__all__ = [
+    "Motions",
+    "animated_gif",
+    "body_colours",
+    "frame",
+    "ground_path",
+    "label_of",
+    "paint",
+    "spring_path",
+]
 
 Array = NDArray[np.float64]
-Motion = NDArray[np.complex128]
 
 #: fill and edge by role, safe for the colour-blind; other bodies in turn
 DISC, PAD = ("#C9D0D8", "#5B6672"), ("#E69F00", "#9A6A00")
 OTHERS = (("#9CC9E8", "#1F6FA3"), ("#9AD3BF", "#00775A"), ("#DDB6CF", "#9A5680"), ("#D9D4B0", "#7A7340"))
-_AT_REST = np.zeros(3, dtype=complex)
 _DPI = 90
-
-
-@dataclass(frozen=True, slots=True)
-class Motions:
-    """How the bodies of a drawing move.
-
-    Attributes
-    ----------
-    bodies : name -> complex (x, y, phi)
-    scale : of displacements on the drawing
-    strain : coupling -> share of the strain energy, 0...1: strongly strained springs are drawn thick and red
-    """
-
-    bodies: Mapping[str, Motion]
-    scale: float
-    strain: Mapping[str, float] = field(default_factory=dict)
-
-    def of(self, body: str) -> Motion:
-        """Motion of a body; the ground is at rest."""
-        return self.bodies.get(body, _AT_REST)
 
 
 def body_colours(picture: Drawing) -> dict[str, tuple[str, str]]:
@@ -103,14 +99,6 @@ def frame(axes: Axes, picture: Drawing) -> None:
         axes.text(left, y + 0.012 * picture.size, "disc moves", fontsize=7.5, color=INK, va="bottom")
 
 
-def label_of(name: str) -> str:
-    """Name of a body for people: "carrier_l" -> "carrier, leading"."""
-    for suffix, word in (("_l", "leading"), ("_t", "trailing")):
-        if name.endswith(suffix):
-            return f"{name[:-2].replace('_', ' ')}, {word}"
-    return name.replace("_", " ")
-
-
 def _paint_body(
     axes: Axes, body: DrawnBody, motions: Motions, phase_rad: float, look: tuple[str, str]
 ) -> None:
@@ -158,35 +146,6 @@ def _paint_spring(
     if not spring.second[0] and spring.kind != "torsion":
         ground = ground_path(spring.first[1], spring.second[1], 0.03 * picture.size)
         axes.plot(ground[:, 0], ground[:, 1], color=GREY, lw=1.0, zorder=5)
-
-
-def spring_path(start: Array, end: Array, kind: str, amplitude: float, turns: int = 4) -> Array:
-    """Zigzag (k, 2) between two points; a spiral where the spring is torsional."""
-    if kind == "torsion":
-        angle = np.linspace(0.0, 3.5 * np.pi, 40)
-        radius = amplitude * (0.25 + 1.3 * angle / angle[-1])
-        return start + np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
-    along = end - start
-    length = float(np.hypot(*along))
-    if length == 0.0:
-        return np.stack([start, end])
-    count = turns if length < 12 * amplitude else max(turns, int(length / (2.5 * amplitude)))
-    normal = np.array([-along[1], along[0]]) / length
-    stations = np.concatenate([[0.0, 0.14], np.linspace(0.14, 0.86, 2 * count + 1)[1:-1], [0.86, 1.0]])
-    swing = np.zeros(len(stations))
-    swing[2:-2] = amplitude * np.where(np.arange(2 * count - 1) % 2 == 0, 1.0, -1.0)
-    return start + stations[:, None] * along + swing[:, None] * normal
-
-
-def ground_path(start: Array, end: Array, size: float) -> Array:
-    """Hatched line (k, 2) across the end of a spring: the ground; nan separates strokes."""
-    along = (end - start) / max(float(np.hypot(*(end - start))), 1e-12)
-    normal = np.array([-along[1], along[0]])
-    strokes = [end - size * normal, end + size * normal, np.full(2, np.nan)]
-    for share in np.linspace(-1.0, 1.0, 5):
-        root = end + share * size * normal
-        strokes += [root, root + 0.45 * size * (along - 0.8 * normal), np.full(2, np.nan)]
-    return np.array(strokes)
 
 
 def animated_gif(
