@@ -73,7 +73,7 @@ class Work(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="window")
-        self._processes: ProcessPoolExecutor | None = None
+        self._processes: dict[str, ProcessPoolExecutor] = {}
         self._bell = _Bell(self)
         self._bell.rung.connect(self._on_rung, Qt.ConnectionType.QueuedConnection)
         self._closed = False
@@ -85,23 +85,25 @@ class Work(QObject):
         future = self._threads.submit(function, *args, Reporter(job))
         return self._follow(job, future)
 
-    def in_process(
-        self, function: Callable[..., Any], *args: Any, done: Done, failed: Failed | None = None
-    ) -> Job:
-        """Run ``function(*args)`` in the worker process: for numbers. Function and values must pickle."""
+    def in_process(self, function: Callable[..., Any], *args: Any, done: Done, failed: Failed | None = None,
+                   lane: str = "") -> Job:  # fmt: skip
+        """Run ``function(*args)`` in the worker process: for numbers. Function and values must pickle.
+
+        Every lane has a worker of its own: answers that a hand waits for do not queue behind long work.
+        """
         job = self._job(done, failed, None)
         try:
-            future = self._pool().submit(function, *args)
+            future = self._pool(lane).submit(function, *args)
         except BrokenProcessPool:  # the worker was killed; a new one takes over
-            self._processes = None
-            future = self._pool().submit(function, *args)
+            del self._processes[lane]
+            future = self._pool(lane).submit(function, *args)
         return self._follow(job, future)
 
-    def _pool(self) -> ProcessPoolExecutor:
-        if self._processes is None:
+    def _pool(self, lane: str) -> ProcessPoolExecutor:
+        if lane not in self._processes:
             context = multiprocessing.get_context("spawn")
-            self._processes = ProcessPoolExecutor(1, mp_context=context)
-        return self._processes
+            self._processes[lane] = ProcessPoolExecutor(1, mp_context=context)
+        return self._processes[lane]
 
     def _job(self, done: Done, failed: Failed | None, progress: Progress | None) -> Job:
         job = Job(self)
@@ -133,13 +135,13 @@ class Work(QObject):
         job.deleteLater()
 
     def close(self) -> None:
-        """Wait for threads, end the worker process."""
+        """Wait for threads, end the worker processes."""
         self._closed = True
         self._threads.shutdown(wait=True, cancel_futures=True)
-        if self._processes is not None:
-            processes = list((self._processes._processes or {}).values())
-            self._processes.shutdown(wait=False, cancel_futures=True)
+        for pool in self._processes.values():
+            processes = list((pool._processes or {}).values())
+            pool.shutdown(wait=False, cancel_futures=True)
             for process in processes:
                 process.terminate()
                 process.join(2.0)
-            self._processes = None
+        self._processes.clear()
