@@ -93,8 +93,8 @@ class SampleRing:
         return cls(path, buffer, specs, capacities, start)
 
     @classmethod
-    def attach(cls, path: Path, timeout_s: float = 10.0) -> SampleRing:
-        """Open the ring of another process, waiting for it to appear.
+    def attach(cls, path: Path, timeout_s: float = 10.0, *, read_only: bool = False) -> SampleRing:
+        """Open the ring of another process, waiting for it to appear; read-only for who must not write.
 
         Raises
         ------
@@ -104,13 +104,14 @@ class SampleRing:
         deadline = time.monotonic() + timeout_s
         while True:
             try:
-                fd = os.open(path, os.O_RDWR | os.O_CLOEXEC)
+                fd = os.open(path, (os.O_RDONLY if read_only else os.O_RDWR) | os.O_CLOEXEC)
             except FileNotFoundError:
                 fd = -1
             if fd >= 0:
                 try:
                     if os.pread(fd, 8, 0) == _MAGIC:
-                        buffer = mmap.mmap(fd, os.fstat(fd).st_size)
+                        access = mmap.ACCESS_READ if read_only else mmap.ACCESS_WRITE
+                        buffer = mmap.mmap(fd, os.fstat(fd).st_size, access=access)
                         break
                 finally:
                     os.close(fd)

@@ -72,6 +72,18 @@ def test_ring_keeps_the_channel_specs_for_other_processes(tmp_path: Path):
         SampleRing.create(tmp_path / "small", SPECS, seconds=0.1).write("pressure", np.zeros(100, np.float32))
 
 
+def test_a_reader_that_only_looks_cannot_write(tmp_path: Path):
+    writer = SampleRing.create(tmp_path / "ring", SPECS)
+    looker = SampleRing.attach(tmp_path / "ring", 0.0, read_only=True)
+    writer.write("pressure", np.arange(5, dtype=np.float32))
+    np.testing.assert_array_equal(looker.read("pressure", 1, 4), [1, 2, 3])
+    with pytest.raises(ValueError, match="read-only"):
+        looker.write("pressure", np.zeros(5, np.float32))
+    np.testing.assert_array_equal(writer.read("pressure", 0, 5), np.arange(5))
+    looker.close()
+    writer.close()
+
+
 def test_block_gives_physical_means_and_raw_samples(tmp_path: Path):
     ring = SampleRing.create(tmp_path / "ring", SPECS)
     ranges = {"microphone": ring.write("microphone", np.array([1, 2, 3], np.int16)), "pressure": (0, 0)}
