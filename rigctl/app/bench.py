@@ -7,7 +7,6 @@ Job: the commands, the live line, words for what a running bench says. Not its j
 from __future__ import annotations
 
 import json
-import re
 import signal
 import threading
 from pathlib import Path
@@ -21,7 +20,7 @@ from rich.markup import escape
 from rich.text import Text
 
 from rigctl.app import exit_codes
-from rigctl.core.errors import ConfigError
+from rigctl.app.fields import parsed_fields
 from rigctl.hal.bench_paths import bench_folder
 
 DEFAULT_BENCH = Path("configs/benches/a_class.toml")
@@ -137,40 +136,9 @@ def _fault(
     """Make something go wrong on the running bench, or mend it."""
     from sim_hardware.bench.commands import ask
 
-    request = {"to": target, "do": action, **parsed_fields(fields or [])}
+    request = {"to": target, "do": action, **parsed_fields(fields or [], place="rigctl bench fault")}
     answer = ask(bench_folder(), request)
     print(json.dumps(answer) if answer else "done")
-
-
-def parsed_fields(fields: list[str]) -> dict[str, Any]:
-    """KEY=VALUE pairs; a value is a JSON value or a hexadecimal number, else a text.
-
-    Raises
-    ------
-    ConfigError
-        One of them is no pair.
-    """
-    found: dict[str, Any] = {}
-    for field in fields:
-        key, sign, text = field.partition("=")
-        if not sign or not key.isidentifier() or key in ("to", "do"):
-            raise ConfigError(
-                f"{field!r} is not KEY=VALUE.",
-                place="rigctl bench fault",
-                value=field,
-                remedy="E.g. for_s=2.",
-            )
-        found[key] = _value(text)
-    return found
-
-
-def _value(text: str) -> Any:
-    if re.fullmatch(r"0[xX][0-9a-fA-F]+", text):
-        return int(text, 16)
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
 
 
 def live_line(status: dict[str, Any]) -> str:

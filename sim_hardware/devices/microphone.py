@@ -27,6 +27,7 @@ from rigctl.core.wire import Link, Listener, connect
 from sim_hardware.brake_model import load_brake
 from sim_hardware.devices.options import add_plant_arguments
 from sim_hardware.plant import Plant, PlantSettings, SoundJob, sound_of
+from sim_hardware.plant.calibrator import CalibratorOnMicrophone
 
 SOCKET_NAME = "microphone.sock"
 MOTION_NAME = "motion"
@@ -77,12 +78,15 @@ class SimulatedMicrophone:
         if self._link is None or self._link.recv(START_TIMEOUT_S) is None:
             raise DeviceError("does not start.", place="simulated microphone", remedy="See logs/rig.log.")
 
-    def submit(self, k: int, job: SoundJob) -> tuple[int, int]:
-        """Order the sound of block `k`; returns its range of samples, which the ring will have soon."""
+    def submit(self, k: int, job: SoundJob, coupler: list[float] | None = None) -> tuple[int, int]:
+        """Order the sound of block `k`; returns its range of samples, which the ring will have soon.
+
+        `coupler`: level of a calibrator on the microphone and drift of the microphone, dB.
+        """
         track, ticks, drive_on = job
         values = np.ascontiguousarray(track).reshape(-1)
         start, stop = self._motion.write(MOTION_NAME, values)
-        self._jobs.append([k, start, stop, len(track), ticks, drive_on])
+        self._jobs.append([k, start, stop, len(track), ticks, drive_on, coupler])
         samples = (self._submitted, self._submitted + round(ticks * self._rate_hz / 4000.0))
         self._submitted = samples[1]
         if len(self._jobs) >= self._batch:
@@ -144,18 +148,20 @@ def main() -> None:
     motion = SampleRing.attach(options.run_dir / MOTION_NAME, 10.0)
     Plant(settings, brake, seed=0).compile()
     link.send({"m": "ready"})
+    calibrator = CalibratorOnMicrophone(settings.microphone.full_scale_pa)
     last_k = -1
     while True:
         try:
             message = link.recv(None)
         except LinkClosed:
             return
-        for k, start, stop, rows, ticks, drive_on in (message or {}).get("jobs", []):
+        for k, start, stop, rows, ticks, drive_on, coupler in (message or {}).get("jobs", []):
             if k != last_k + 1:
                 sound.forget()
             last_k = k
             track = motion.read(MOTION_NAME, start, stop).reshape(rows, -1)
-            ring.write(MICROPHONE, sound.render(track, ticks, drive_on))
+            counts = sound.render(track, ticks, drive_on)
+            ring.write(MICROPHONE, counts if coupler is None else calibrator.heard(counts, *coupler))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 """The simulated rig as a process: stands for the hardware, and outlives the controller as hardware does.
 
 Job: step the plant in lockstep with the controller and the watchdog (virtual time) or by the wall clock
-(real time); be the safety relay: open without fresh edges, torque off and pressure vented while open; go on
-alone to standstill when the controller is gone. Not its job: physics (`sim_hardware.plant`).
+(real time); be the safety relay: open without fresh edges or by the hard-wired chain (emergency stop, doors),
+torque off and pressure vented while open; go on alone to standstill when the controller is gone. Not its job:
+physics (`sim_hardware.plant`), faults on purpose (`stimuli`).
 
 The order of messages is in `docs/explanation/processes.md`.
 """
@@ -14,6 +15,7 @@ import select
 import signal
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 from rigctl.core.errors import DeviceError, LinkClosed, RigctlError
@@ -43,11 +45,21 @@ class RigServer:
         Pace blocks by the wall clock and do not wait for anybody.
     relay_timeout_s : float
         Real time: the relay opens when no edge has come for so long.
+    run_dir : Path
+        Where the fault laboratory listens.
     """
 
     def __init__(
-        self, plant: Any, ring: Any, microphone: Any, *, real_time: bool, relay_timeout_s: float
+        self,
+        plant: Any,
+        ring: Any,
+        microphone: Any,
+        *,
+        real_time: bool,
+        relay_timeout_s: float,
+        run_dir: Path,
     ) -> None:
+        from sim_hardware.devices.stimuli import Door, Stimuli
         from sim_hardware.plant import Commands, behind_relay
 
         self._plant = plant
@@ -68,6 +80,8 @@ class RigServer:
         self._edge_at = time.monotonic()
         self._blocks_at_rest = REST_BLOCKS
         self._poll = select.poll()
+        self._stimuli = Stimuli(plant)
+        self._door = Door(run_dir, self._stimuli, self._poll)
 
     def connect(self, controller: Link | None, safety: Link | None) -> None:
         """The two parties, once they have said hello."""
@@ -84,8 +98,11 @@ class RigServer:
                 next_tick = self._wait_for_tick(next_tick)
             elif not self._wait_for_lockstep():
                 continue
-            if self._controller is None and self._safety is None and self._at_rest():
-                return
+            if self._controller is None and self._safety is None:
+                self._stimuli.clear()  # nobody is left to mend a stuck valve
+                if self._at_rest():
+                    self._door.close()
+                    return
             self._advance()
 
     # -- time -----------------------------------------------------------------------------------
@@ -130,6 +147,8 @@ class RigServer:
             elif self._safety is not None and fd == self._safety.fileno():
                 self._safety = self._read(self._safety, self._on_safety)
                 self._check_safety()
+            elif self._door.on_ready(fd) and not self._stimuli.chain_ok:
+                self._open_relay("emergency stop or doors")
 
     def _read(self, link: Link, handle: Any) -> Link | None:
         try:
@@ -164,7 +183,7 @@ class RigServer:
         if kind == "open":
             self._open_relay(str(message.get("reason", "")))
         elif kind == "close":
-            self._relay = True
+            self._relay = self._stimuli.chain_ok
         if kind != "open":
             self._edge_at = time.monotonic()
         if message.get("k") == self._k - 1:
@@ -190,19 +209,28 @@ class RigServer:
         self._blocks_at_rest = self._blocks_at_rest + 1 if resting else 0
 
     def _advance(self) -> None:
-        step = self._step
+        step, stimuli = self._step, self._stimuli
         dt_ns = step["dt_ns"] if step else FREE_RUN_BLOCK_NS
-        recording = bool(step and step["recording"])
+        stimuli.begin(self._t_ns * 1e-9)
+        if not stimuli.chain_ok:
+            self._open_relay("emergency stop or doors")
+        full_rate = bool(step and step["recording"]) or stimuli.listens
         commands = self._commands(step["set"] if step else None)
-        result = self._plant.step(dt_ns, commands, full_rate=recording)
+        result = stimuli.readings(self._plant.step(dt_ns, commands, full_rate=full_rate))
         self._watch_rest()
         ranges = {name: self._ring.write(name, samples) for name, samples in result.samples.items()}
         job = self._plant.take_sound_job()
         name = self._plant.sound_channel.name
-        ranges[name] = self._microphone.nothing() if job is None else self._microphone.submit(self._k, job)
+        if job is None:
+            ranges[name] = self._microphone.nothing()
+        else:
+            ranges[name] = self._microphone.submit(self._k, job, stimuli.sound)
         if job is None:
             self._microphone.flush()
-        status = {"relay": self._relay, "enabled": commands.drive_enabled, "estop": True, "doors": True}
+        status = {
+            "relay": self._relay, "enabled": commands.drive_enabled, "estop": stimuli.estop_ok,
+            "doors": stimuli.doors_ok,
+        }  # fmt: skip
         end_s = (self._t_ns + dt_ns) * 1e-9
         message = {
             "m": "block", "k": self._k, "t_ns": self._t_ns, "dt_ns": dt_ns, "stride": result.stride,
@@ -232,9 +260,10 @@ class RigServer:
             vent=bool(points.get("vent", True)),
             ventilator_m3_h=float(points.get("ventilator_m3_h", 0.0)),
         )
-        return self._behind_relay(
+        reaching = self._behind_relay(
             wanted, closed=self._relay, ventilator_max_m3_h=self._plant.ventilator_max_m3_h
         )
+        return self._stimuli.commands(reaching, relay_closed=self._relay)
 
     def _send(self, link: Link, message: dict[str, Any]) -> Link | None:
         try:
@@ -295,8 +324,9 @@ def main() -> None:
         plant.compile(sound=False)
         microphone.wait_until_ready()
         server = RigServer(
-            plant, ring, microphone, real_time=real_time, relay_timeout_s=options.relay_timeout
-        )
+            plant, ring, microphone, real_time=real_time, relay_timeout_s=options.relay_timeout,
+            run_dir=options.run_dir,
+        )  # fmt: skip
         parties = accept_parties(listener)
         parties["controller"].send({"m": "hello", "channels": [s.to_mapping() for s in plant.channels]})
         server.connect(parties["controller"], parties["safety"])

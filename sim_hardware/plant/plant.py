@@ -68,6 +68,7 @@ class Plant:
         self._queue_tick, self._queue_value = slow_physics.empty_queue()
         self._requested_pa = 0.0
         self._relay_closed = False
+        self._lever_nm = 0.0
         self._pending: SoundJob | None = None
         own, of = settings.safety_sensors, settings.sensors
         pyrometer = SensorError(gain=1.0, offset=0.0, noise=settings.pyrometer.noise_k)
@@ -134,6 +135,9 @@ class Plant:
             drive_on, commands.quick_stop, commands.vent or not commands.relay_closed, flow,
             out, safety, track,
         )  # fmt: skip
+        if self._lever_nm:
+            out[0] += self._lever_nm
+            safety[2] += self._lever_nm
         self._relay_closed = commands.relay_closed
         self._pending = (track, ticks, drive_on) if full_rate else None
         if not full_rate:
@@ -214,6 +218,10 @@ class Plant:
             if not 0.0 <= bedding < 1.0:
                 raise ValueError(f"bedding is {bedding}; give 0 (new) to below 1 (bedded)")
             self._state["bedding_energy"] = -math.log1p(-bedding) * self.settings.friction.bedding_energy_j
+
+    def set_lever(self, torque_nm: float) -> None:
+        """A lever with weights on the frame that carries the brake: both torque sensors feel it."""
+        self._lever_nm = torque_nm
 
     # -- inside ------------------------------------------------------------------------------------------
 
