@@ -136,7 +136,7 @@ def _fault(
     """Make something go wrong on the running bench, or mend it."""
     from sim_hardware.bench.commands import ask
 
-    request = {"to": target, "do": action, **parsed_fields(fields or [], place="rigctl bench fault")}
+    request = {"to": target, "do": action, **parsed_fields(fields or [], command="rigctl bench fault")}
     answer = ask(bench_folder(), request)
     print(json.dumps(answer) if answer else "done")
 

@@ -8,7 +8,8 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from rigctl.app.bench import live_line, parsed_fields, register
+from rigctl.app.bench import live_line, register
+from rigctl.app.fields import parsed_fields
 from rigctl.core.errors import ConfigError, DeviceError
 from sim_hardware.bench.commands import CommandServer
 from sim_hardware.bench.settings import load_bench
@@ -53,7 +54,9 @@ def test_live_line_says_what_matters() -> None:
 
 
 def test_fields_are_json_hexadecimal_or_text() -> None:
-    found = parsed_fields(["on=false", "for_s=2.5", "node=0x10", "wire=broken", "text=a=b", "count=null"])
+    found = parsed_fields(
+        ["on=false", "for_s=2.5", "node=0x10", "wire=broken", "text=a=b", "count=null"], "rigctl bench fault"
+    )
     assert found == {
         "on": False, "for_s": 2.5, "node": 16, "wire": "broken", "text": "a=b", "count": None
     }  # fmt: skip
@@ -62,7 +65,7 @@ def test_fields_are_json_hexadecimal_or_text() -> None:
 @pytest.mark.parametrize("field", ["pressed", "=1", "do=clear", "to=can", "a b=1"])
 def test_no_pairs_are_refused(field: str) -> None:
     with pytest.raises(ConfigError, match="is not KEY=VALUE"):
-        parsed_fields([field])
+        parsed_fields([field], "rigctl bench fault")
 
 
 def test_fault_reaches_the_bench_of_the_folder(
