@@ -31,10 +31,15 @@ _SHOWN_VALUES = 5
 
 
 class Problem(Data):
-    """One kind of problem at one place: first met at braking `first_index`, in `count` brakings."""
+    """One kind of problem at one place: first met at braking `first_index`, in `count` brakings.
+
+    `place` is for reading; `sequence` (name) and `key` (field of the sequence) say the same for programs.
+    """
 
     severity: Severity
     place: str
+    sequence: str
+    key: str
     value: str
     problem: str
     remedy: str
@@ -100,6 +105,8 @@ class _Collector:
             yield Problem(
                 severity=group.finding.severity,
                 place=f"sequences[{positions[key.sequence]}] '{key.sequence}': {key.key}",
+                sequence=key.sequence,
+                key=key.key,
                 value=_text(list(group.values), group.finding.unit),
                 problem=group.finding.problem,
                 remedy=sentence(group.finding.remedy),
