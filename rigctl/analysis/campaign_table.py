@@ -3,19 +3,20 @@
 Job: `read_campaign` turns the summaries of the braking files into typed rows; the selections that statistics
 are based on; CSV. NOT its job: samples (only the loudest braking's are ever read, by `figures`), statistics.
 
-Statistics are based on *complete* brakings. Incomplete and recovered ones, and files that cannot be read, are
-listed, never counted. Squeal statistics are based on those complete brakings whose sound was recorded.
+Statistics are based on *complete* brakings that nobody has excluded. Incomplete and recovered ones, excluded
+ones, and files that cannot be read, are listed, never counted. Squeal statistics are based on those of them
+whose sound was recorded. Loads HDF5 only when files are read.
 """
 
 import csv
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from rigctl.core.channels import DISC_TEMPERATURE, MICROPHONE
 from rigctl.core.errors import RecordingError
-from rigctl.recording.braking_file import read_summary
+from rigctl.recording.annotations import UNTOUCHED, Annotation, Folding, read_annotations
 
 COMPLETE = "complete"
 
@@ -44,7 +45,11 @@ class EventRow:
 
 @dataclass(frozen=True, slots=True)
 class BrakingRow:
-    """One braking: set-points, results, and its main (loudest) squeal."""
+    """One braking: set-points, results, its main (loudest) squeal, and what people said about it.
+
+    `excluded` is the reason for which it does not count ("" when it does), `excluded_by` who and when;
+    `remark` holds the notes of the operator and of whoever looked at it later.
+    """
 
     index: int
     file: str
@@ -75,6 +80,11 @@ class BrakingRow:
     squeal_level_db: float | None
     squeal_level_dba: float | None
     evaluation_error: str
+    excluded: str = ""
+    excluded_by: str = ""
+    tags: tuple[str, ...] = ()
+    rating: int | None = None
+    remark: str = ""
 
     @property
     def complete(self) -> bool:
@@ -82,9 +92,14 @@ class BrakingRow:
         return self.status == COMPLETE
 
     @property
+    def counts(self) -> bool:
+        """True when this braking belongs to the base of statistics."""
+        return self.complete and not self.excluded
+
+    @property
     def counts_for_squeal(self) -> bool:
         """True when this braking belongs to the base of squeal statistics."""
-        return self.complete and self.sound_recorded and not self.evaluation_error
+        return self.counts and self.sound_recorded and not self.evaluation_error
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,11 +112,15 @@ class CampaignTable:
 
     def complete(self) -> tuple[BrakingRow, ...]:
         """Brakings that count."""
-        return tuple(b for b in self.brakings if b.complete)
+        return tuple(b for b in self.brakings if b.counts)
 
     def incomplete(self) -> tuple[BrakingRow, ...]:
-        """Brakings that are there but do not count."""
-        return tuple(b for b in self.brakings if not b.complete)
+        """Brakings that are there but do not count because something is missing."""
+        return tuple(b for b in self.brakings if not b.complete and not b.excluded)
+
+    def excluded(self) -> tuple[BrakingRow, ...]:
+        """Brakings that a person has excluded."""
+        return tuple(b for b in self.brakings if b.excluded)
 
     def with_sound(self) -> tuple[BrakingRow, ...]:
         """Base of all squeal statistics."""
@@ -142,25 +161,76 @@ def read_campaign(campaign_dir: Path) -> CampaignTable:
             place=str(campaign_dir),
             remedy="Name the folder that `rigctl run` printed.",
         )
+    from rigctl.recording.braking_file import read_summary
+
+    said = read_annotations(campaign_dir)
     brakings: list[BrakingRow] = []
     events: list[EventRow] = []
     unreadable: list[tuple[str, str]] = []
     for path in sorted(folder.glob("*.h5")):
         try:
-            summary = read_summary(path)
-            rows = list(_events(summary))
-            brakings.append(_braking(summary, path.name, rows))
-            events.extend(rows)
+            row, found = rows_of(read_summary(path), path.name, said)
+            brakings.append(row)
+            events.extend(found)
         except RecordingError as error:
             unreadable.append((path.name, error.problem))
-        except (KeyError, TypeError, ValueError) as error:
-            unreadable.append((path.name, f"its summary is not understood ({error!r})"))
-    brakings.sort(key=lambda b: b.index)
-    events.sort(key=lambda e: (e.braking, e.start_s or 0.0))
-    return CampaignTable(tuple(brakings), tuple(events), tuple(unreadable))
+    return in_order(brakings, events, unreadable)
 
 
-def _braking(summary: Mapping[str, Any], file: str, events: list[EventRow]) -> BrakingRow:
+def in_order(
+    brakings: Iterable[BrakingRow], events: Iterable[EventRow], unreadable: Iterable[tuple[str, str]]
+) -> CampaignTable:
+    """The table of these rows, by number of the braking."""
+    return CampaignTable(
+        tuple(sorted(brakings, key=lambda b: b.index)),
+        tuple(sorted(events, key=lambda e: (e.braking, e.start_s or 0.0))),
+        tuple(unreadable),
+    )
+
+
+def rows_of(
+    summary: Mapping[str, Any], file: str, said: Folding | None = None
+) -> tuple[BrakingRow, tuple[EventRow, ...]]:
+    """Rows of one braking, from the summary of its file.
+
+    Raises
+    ------
+    RecordingError
+        The summary is not one of a braking.
+    """
+    try:
+        events = tuple(_events(summary))
+        row = _braking(summary, file, events)
+        index = row.index
+        return annotated(row, said.of(index) if said else UNTOUCHED, summary["marks"]), events
+    except (KeyError, TypeError, ValueError) as error:
+        raise RecordingError(f"its summary is not understood ({error!r})", place=file) from error
+
+
+def annotated(row: BrakingRow, said: Annotation, marks: Sequence[Mapping[str, Any]] = ()) -> BrakingRow:
+    """The row with what people said about its braking.
+
+    Notes and rating that the operator gave while it was recorded are in the journal and, as marks, in the
+    file; those of the file are used where the journal is missing (a file copied elsewhere).
+    """
+    words, rating = said.remark, said.rating
+    if not said.said:
+        stored = [str(m["values"].get("text", "")) for m in marks if m["name"] == "operator_note"]
+        words = " · ".join(text for text in (*stored, said.note) if text)
+    if rating is None:
+        stored_rating = [m["values"].get("rating") for m in marks if m["name"] == "operator_rating"]
+        rating = stored_rating[-1] if stored_rating else None
+    return replace(
+        row,
+        excluded=said.excluded,
+        excluded_by=said.excluded_by,
+        tags=said.tags,
+        rating=rating,
+        remark=words,
+    )
+
+
+def _braking(summary: Mapping[str, Any], file: str, events: Sequence[EventRow]) -> BrakingRow:
     results, set_points = summary["results"], summary["set_points"]
     main = max((e for e in events if not e.harmonic), key=lambda e: e.level_db, default=None)
     return BrakingRow(
@@ -240,4 +310,6 @@ def _cell(value: object) -> object:
         return ""
     if isinstance(value, bool):
         return int(value)
+    if isinstance(value, tuple):
+        return ", ".join(str(item) for item in value)
     return f"{value:.6g}" if isinstance(value, float) else value

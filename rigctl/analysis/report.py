@@ -243,6 +243,8 @@ def _page(
         n_harmonics=sum(1 for e in squeals if e.harmonic),
         brakings=table.brakings,
         incomplete=table.incomplete(),
+        excluded=table.excluded(),
+        excluded_indices={b.index for b in table.excluded()},
         unreadable=table.unreadable,
         info=[*info.items(), *_found_info(table)],
         detector=_detector(table, campaign_dir),

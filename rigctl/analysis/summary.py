@@ -40,6 +40,7 @@ class Summary:
     predicted_onset_bar: float | None
     predicted_frequency_hz: float | None
     predicted_by: str
+    n_excluded: int = 0
 
 
 def summarise(table: CampaignTable, prediction: Prediction | None) -> Summary:
@@ -81,6 +82,7 @@ def summarise(table: CampaignTable, prediction: Prediction | None) -> Summary:
         predicted_onset_bar=prediction.onset_bar if prediction else None,
         predicted_frequency_hz=prediction.frequency_hz if prediction else None,
         predicted_by=prediction.label if prediction else "",
+        n_excluded=len(table.excluded()),
     )
 
 
@@ -93,6 +95,8 @@ def _brakings(s: Summary) -> tuple[str, ...]:
     if s.n_brakings == 0:
         return ("No braking has been recorded.",)
     text = f"{s.n_complete} of {s.n_brakings} recorded brakings are complete"
+    if s.n_excluded:
+        text += f" and count; {s.n_excluded} {_are(s.n_excluded)} excluded by a person, see below"
     if s.n_incomplete:
         text += f"; {s.n_incomplete} incomplete {_are(s.n_incomplete)} listed below and not counted"
     if s.n_complete == 0:

@@ -25,7 +25,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import tomli_w
 
@@ -34,8 +34,8 @@ from rigctl.core.journal import read_journal
 from rigctl.recording.braking import COMPLETE
 from rigctl.recording.braking_file import read_summary
 from rigctl.recording.durable import disk_error, publish, sync_folder, write_part
+from rigctl.recording.kinds import COMMITTED
 
-COMMITTED: Final = "BRAKING_COMMITTED"
 _SAFE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 _FILE_NAME = re.compile(r"(\d{5,})\.h5")
 
