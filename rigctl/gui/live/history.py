@@ -41,7 +41,7 @@ class Envelope:
         """True when every bin is one sample."""
         return self.low is self.high
 
-    def times_s(self) -> NDArray[np.float64]:
+    def times_s(self) -> NDArray[np.floating]:
         """Time of each sample, or middle of each bin, shape (n,)."""
         shift = 0.0 if self.exact else 0.5
         return self.start_s + (np.arange(len(self.low)) + shift) * self.step_s
