@@ -5,11 +5,14 @@ Not its job: where samples travel (`rigctl.core.ring`), filters (`rigctl.signals
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rigctl.core.errors import DeviceError
 
 MICROPHONE = "microphone"
 TORQUE = "torque"
@@ -54,6 +57,51 @@ class ChannelSpec:
     def to_mapping(self) -> dict[str, Any]:
         """Plain mapping for messages; `ChannelSpec(**mapping)` is the way back."""
         return {field: getattr(self, field) for field in self.__dataclass_fields__}
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelCorrection:
+    """A calibration as a channel takes it on: true value = gain · value + offset.
+
+    Attributes
+    ----------
+    nominal_scale : float
+        Scale of the channel for which it was found.
+    """
+
+    channel: str
+    gain: float
+    offset: float
+    nominal_scale: float
+
+    def applied_to(self, spec: ChannelSpec) -> ChannelSpec:
+        """The channel with calibrated scale and offset; its samples stay as acquired.
+
+        Raises
+        ------
+        DeviceError
+            The scale of the channel is not the one that was calibrated.
+        """
+        if abs(spec.scale / self.nominal_scale - 1.0) > 1e-6:
+            raise DeviceError(
+                f"has the scale {spec.scale:g}, and was calibrated with {self.nominal_scale:g}.",
+                place=f"channel {spec.name}",
+                value=spec.scale,
+                remedy="Calibrate it anew, or bring the rig file back to what it was.",
+            )
+        return replace(spec, scale=spec.scale * self.gain, offset=spec.offset * self.gain + self.offset)
+
+
+def corrected(specs: Iterable[ChannelSpec], corrections: Iterable[ChannelCorrection]) -> list[ChannelSpec]:
+    """Channels with the corrections in force; channels without one stay as they are.
+
+    Raises
+    ------
+    DeviceError
+        See `ChannelCorrection.applied_to`.
+    """
+    by_name = {correction.channel: correction for correction in corrections}
+    return [by_name[spec.name].applied_to(spec) if spec.name in by_name else spec for spec in specs]
 
 
 @dataclass(frozen=True, slots=True)
