@@ -39,7 +39,7 @@ from drivers.daq.collector import SETTLE_S, Collector
 from drivers.daq.rig_time import HostTime, RigTime, SoundTime
 from drivers.daq.source import AnySource, Master, Source, checked
 from rigctl.core.blocks import Block
-from rigctl.core.channels import ChannelSpec
+from rigctl.core.channels import ChannelSpec, corrected
 from rigctl.core.errors import ConfigError, DeviceError
 from rigctl.core.registry import Registry
 from rigctl.core.ring import RING_NAME, SampleRing
@@ -171,7 +171,8 @@ class LiveAcquisition:
 
     def channels(self) -> Sequence[ChannelSpec]:
         """See `Acquisition.channels`."""
-        return [spec for source in self._sources() for spec in source.channels()]
+        specs = (spec for source in self._sources() for spec in source.channels())
+        return corrected(specs, self._context.corrections)
 
     def clocks(self) -> dict[str, dict[str, Any]]:
         """Measured offset and drift of each source's clock against the master; see `collector.ClockState`."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from rigctl.core.blocks import Block
-from rigctl.core.channels import ChannelSpec
+from rigctl.core.channels import ChannelCorrection, ChannelSpec
 from rigctl.hal.sharing import Lease, StatusBoard
 
 T = TypeVar("T")
@@ -58,6 +58,8 @@ class RigContext:
         Where drivers log every transfer on their wires (`rigctl.hal.wirelog`; CAN: `drivers.can`); None: not.
     buses : mapping
         The rig file's `[buses.NAME]` tables.
+    corrections : tuple of ChannelCorrection
+        Calibrations in force: the acquisition takes them into scale and offset of its channels.
     lease : Lease
         In force while the control loop asks for blocks.
     board : StatusBoard
@@ -72,6 +74,7 @@ class RigContext:
     log_dir: Path | None = None
     wire_log_dir: Path | None = None
     buses: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Mapping[str, Any]])
+    corrections: tuple[ChannelCorrection, ...] = ()
     lease: Lease = field(default_factory=Lease)
     board: StatusBoard = field(default_factory=StatusBoard)
     _shared: dict[str, Any] = field(default_factory=dict)
@@ -160,7 +163,8 @@ class Acquisition(Device, Protocol):
     """Signal sources of the rig, and its clock: the one that waits for the next block."""
 
     def channels(self) -> Sequence[ChannelSpec]:
-        """All channels it delivers, known after `open`."""
+        """All channels it delivers, known after `open`, with the corrections of the context in them
+        (`rigctl.core.channels.corrected`)."""
         ...
 
     def next_block(self, request: Request) -> Block:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 from zlib import crc32
@@ -174,7 +174,11 @@ def _store(spec: ChannelSpec, spool: Spool, factor: int) -> StoredChannel:
     gaps_s = tuple((start / spec.rate_hz, stop / spec.rate_hz) for start, stop in stretch.gaps)
     native = ChannelData(spec, 0.0, stretch.samples)
     if factor == 1:
-        return StoredChannel(native, spec, None, gaps_s)
+        if spec.is_counts:
+            return StoredChannel(native, spec, None, gaps_s)
+        # a calibration changes values that are physical already; the native spec in the file keeps it
+        value = replace(spec, scale=1.0, offset=0.0)
+        return StoredChannel(ChannelData(value, 0.0, native.physical()), spec, None, gaps_s)
     samples = decimate(native.physical(), factor)
     stored = ChannelSpec(spec.name, spec.unit, spec.rate_hz / factor, "float32", description=spec.description)
     description = design_decimation(factor).describe(spec.rate_hz)

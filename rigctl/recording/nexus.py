@@ -97,7 +97,9 @@ def _channel(entry: Group, channel: StoredChannel, axes: dict[tuple[float, int],
 
 def _filter_json(channel: StoredChannel) -> str:
     if channel.filter is None:
-        return json.dumps({"kind": "none", "stored": "as acquired"})
+        spec = channel.native
+        plain = spec.is_counts or (spec.scale, spec.offset) == (1.0, 0.0)
+        return json.dumps({"kind": "none", "stored": "as acquired" if plain else "scale and offset applied"})
     return json.dumps(channel.filter.model_dump(mode="json"), ensure_ascii=False)
 
 

@@ -6,8 +6,10 @@ next block. Not its job: physics.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -138,6 +140,8 @@ class SimulatedAcquisition(_Simulated):
         self._session.arguments = ["--brake", str(paths["brake"]), "--plant", str(paths["plant"])]
         if context.seed is not None:
             self._session.arguments += ["--seed", str(context.seed)]
+        if context.corrections:
+            self._session.arguments += ["--corrections", json.dumps([asdict(c) for c in context.corrections])]
 
     def channels(self) -> Sequence[ChannelSpec]:
         """See `Acquisition.channels`."""

@@ -11,6 +11,7 @@ The order of messages is in `docs/explanation/processes.md`.
 from __future__ import annotations
 
 import argparse
+import json
 import select
 import signal
 import sys
@@ -304,11 +305,13 @@ def main() -> None:
     add_plant_arguments(parser)
     parser.add_argument("--time", choices=("virtual", "real"), required=True)
     parser.add_argument("--relay-timeout", type=float, required=True)
+    parser.add_argument("--corrections", default="[]", help="Calibrations in force, as JSON.")
     options = parser.parse_args()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     listener = Listener(options.run_dir / SOCKET_NAME)  # before the slow imports: the others can connect
 
     from rigctl.config.loading import load_model
+    from rigctl.core.channels import ChannelCorrection, corrected
     from rigctl.core.ring import RING_NAME, SampleRing
     from sim_hardware.brake_model import load_brake
     from sim_hardware.devices.microphone import BATCH, SimulatedMicrophone
@@ -316,7 +319,9 @@ def main() -> None:
 
     settings = load_model(options.plant, PlantSettings)
     plant = Plant(settings, load_brake(options.brake), seed=options.seed)
-    ring = SampleRing.create(options.run_dir / RING_NAME, plant.channels, seconds=RING_S)
+    corrections = [ChannelCorrection(**mapping) for mapping in json.loads(options.corrections)]
+    channels = corrected(plant.channels, corrections)
+    ring = SampleRing.create(options.run_dir / RING_NAME, channels, seconds=RING_S)
     real_time = options.time == "real"
     arguments = ["--brake", str(options.brake), "--plant", str(options.plant), "--seed", str(options.seed)]
     microphone = SimulatedMicrophone(options.run_dir, ring, arguments, batch=1 if real_time else BATCH)
@@ -328,7 +333,7 @@ def main() -> None:
             run_dir=options.run_dir,
         )  # fmt: skip
         parties = accept_parties(listener)
-        parties["controller"].send({"m": "hello", "channels": [s.to_mapping() for s in plant.channels]})
+        parties["controller"].send({"m": "hello", "channels": [s.to_mapping() for s in channels]})
         server.connect(parties["controller"], parties["safety"])
         listener.close()
         server.run()
