@@ -1,8 +1,8 @@
 """The window's one connection to a controller: signals for what comes, methods for what a person asks.
 
-Job: find running sessions, watch one, start new ones as processes of their own, send commands. Everything is asked
-of the controller, which decides; a refusal comes back as `refused` with the reason. Not its job: samples
-(`rigctl.gui.live`), words for the state (`rigctl.gui.rig.state`).
+Job: find running sessions, watch one, start new ones as processes of their own, send commands. Everything is
+asked of the controller, which decides; a refusal comes back as `refused` with the reason. Not its job:
+samples (`rigctl.gui.live`), words for the state (`rigctl.gui.rig.state`).
 """
 
 from __future__ import annotations
@@ -29,13 +29,17 @@ class RigConnection(QObject):
     detached = Signal(str)
     """It has ended or gone; why."""
     refused = Signal(str)
-    """The controller or this window refused something; the reason in words."""
+    """The controller or this window refused something; why."""
     blocksArrived = Signal(list)
     """Blocks since the last time, for live plots: mappings with t_ns, dt_ns, stride and ranges (as `Block`)."""
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.state = RigState()
+        self.session: Any = None
+        """Session that is watched, as `attached` gave it; pages that are made later look here."""
+        self.records: list[Any] = []
+        """All records of its journal so far."""
 
     # -- sessions ---------------------------------------------------------------------------------
 

@@ -75,6 +75,8 @@ class RigState:
         Safety relay, drive torque.
     commander : str
         Who may command ("" nobody); `commanding` is True when it is this window.
+    recording, recording_left_s : bool, float or None
+        A braking is being recorded, and for how much longer in rig time, s; None when unknown.
     """
 
     word: Word = Word.OFFLINE
@@ -98,4 +100,5 @@ class RigState:
     commander: str = ""
     commanding: bool = False
     recording: bool = False
+    recording_left_s: float | None = None
     readings: Readings = field(default_factory=Readings)
