@@ -169,6 +169,7 @@ class Folding:
         self.states: dict[int, Annotation] = {}
         self._running: dict[int, Annotation] = {}
         self._sha: dict[int, str] = {}
+        self._seen: set[str] = set()
         self.add(records)
 
     def of(self, index: int) -> Annotation:
@@ -176,14 +177,15 @@ class Folding:
         return self.states.get(index, UNTOUCHED)
 
     def add(self, records: Iterable[Record]) -> set[int]:
-        """Take in further records; returns the brakings that have changed."""
+        """Take in further records, each once; returns the brakings that have changed."""
         return {index for record in records if (index := self._take(record)) is not None}
 
     def _take(self, record: Record) -> int | None:
         payload = record.payload
         index = payload.get("index")
-        if not isinstance(index, int):
+        if not isinstance(index, int) or record.sha in self._seen:
             return None
+        self._seen.add(record.sha)
         if record.kind == ANNOTATED:
             self.states[index] = _after(self.of(index), record)
         elif record.kind == _STARTED:

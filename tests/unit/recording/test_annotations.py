@@ -97,6 +97,7 @@ def test_record_by_record_as_in_one_go(folder):
     records = list(read_journal(folder / "journal.jsonl"))
     folding = Folding()
     assert [folding.add([r]) for r in records] == [{3}, {4}]
+    assert folding.add(records) == set(), "told twice changes nothing"
     assert folding.states == Folding(records).states
 
 
