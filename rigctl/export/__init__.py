@@ -1,0 +1,1 @@
+"""Brakings in the formats of other programs: WAV, CSV, MATLAB. Not its job: which brakings."""
