@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 import rigctl
 from rigctl.app.compose import resolved_paths
+from rigctl.calibration.record import Calibration
 from rigctl.config.loading import load_model
 from rigctl.config.rig import RigConfig
 from sequences.program import Program
@@ -41,6 +42,7 @@ class CampaignFile(BaseModel):
     sources: dict[str, str]
     program: Program
     rig: RigConfig
+    calibrations: tuple[Calibration, ...] = ()
 
     @classmethod
     def load(cls, campaign: Path) -> CampaignFile:
@@ -69,6 +71,7 @@ class CampaignFile(BaseModel):
                 "program": self.program.name,
                 "seed": self.seed,
                 "versions": self.versions,
+                "calibrations": [calibration.summary() for calibration in self.calibrations],
             },
             "evaluation": {"friction": self.rig.friction.model_dump(mode="json")},
         }
@@ -92,6 +95,7 @@ def freeze(
     time: str,
     seed: int,
     limits_hash8: str,
+    calibrations: tuple[Calibration, ...] = (),
 ) -> tuple[CampaignFile, dict[str, Path]]:
     """What a campaign is started with, and the files to be copied into it (name in the campaign -> source).
 
@@ -116,6 +120,7 @@ def freeze(
         sources={"program": str(program_path), "rig": str(rig_path)},
         program=program,
         rig=RigConfig.model_validate(mapping),
+        calibrations=calibrations,
     )
     return file, copies
 

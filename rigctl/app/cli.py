@@ -144,12 +144,13 @@ def stability(
 
 
 def _add_families() -> None:
-    from rigctl.app import bench, devices, laboratory
+    from rigctl.app import bench, calibrations, devices, laboratory
     from rigctl.app.model import model_app
 
     app.add_typer(model_app(), name="model")
     devices.register(app)
     bench.register(app)
+    calibrations.register(app)
     laboratory.register(app)
 
 

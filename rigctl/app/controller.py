@@ -73,6 +73,7 @@ class Controller:
             place=str(self._campaign / "campaign.toml"),
             folder=self._campaign,
             log_dir=self._campaign / "logs",
+            corrections=tuple(calibration.correction for calibration in file.calibrations),
         )
         rig = build_rig(file.rig, context)
         with rig:

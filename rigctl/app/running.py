@@ -18,6 +18,7 @@ from pathlib import Path
 from rich.console import Console
 
 from rigctl.app import campaign_file, exit_codes
+from rigctl.app.calibrations import for_run
 from rigctl.app.campaign_file import CampaignFile
 from rigctl.app.compose import (
     build_rig,
@@ -101,6 +102,7 @@ def run(options: RunOptions, console: Console) -> int:
         time=time_mode,
         seed=secrets.randbelow(2**31) if options.seed is None else options.seed,
         limits_hash8=limits.hash8,
+        calibrations=for_run(rig, options.rig, options.out),
     )
     campaign = create_campaign(options.out / name, file.model_dump(mode="json", exclude_none=True))
     with campaign.lock("run"):

@@ -81,6 +81,12 @@ class PredictionConfig(_Frozen):
     brake: Path
 
 
+class CalibrationsConfig(_Frozen):
+    """Where the calibrations of the rig's sensors are kept; without it, in the data folder."""
+
+    folder: Path
+
+
 class SafetyConfig(_Frozen):
     """Where the watchdog finds its limits."""
 
@@ -99,6 +105,7 @@ class RigConfig(_Frozen):
     friction: FrictionConfig
     safety: SafetyConfig
     prediction: PredictionConfig | None = None
+    calibrations: CalibrationsConfig | None = None
     block_s: Annotated[float, Field(ge=0.01, le=0.5)] = 0.05
     steady_block_s: Annotated[float, Field(ge=0.01, le=0.5)] = 0.05
     """Virtual time: length of recorded blocks while the set-points do not change."""
