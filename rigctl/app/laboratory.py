@@ -14,7 +14,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from rigctl.app.bench import parsed_fields
+from rigctl.app.fields import parsed_fields
 
 _EXAMPLES = """\b
 rigctl laboratory status

@@ -1,4 +1,4 @@
-"""A calibration in force: frozen with the campaign, in scale and offset of its channel, in every braking file."""
+"""A calibration in force: frozen with the campaign, in its channel, in every braking file."""
 
 import json
 import tomllib
