@@ -3,6 +3,11 @@
 Job: `CanopenNetwork`, shared by all CANopen devices of a bus: a `canopen.Network` whose frames go through the
 session, our heartbeat (one every 100 ms while the lease is in force, none otherwise), and the detection of a
 second controller with our node id. Not its job: single nodes (`drivers.can.canopen_node`).
+
+A node watches us only from the first heartbeat that it has heard (CiA 301). So when the lease comes into
+force, and when a node has been started, some heartbeats follow each other quickly, and no set-point goes out
+before them (`heartbeats_since`). One of them may slip; a node that is commanded but does not watch would hold
+its output for ever if we died then.
 """
 
 from __future__ import annotations
@@ -10,6 +15,7 @@ from __future__ import annotations
 import logging
 import struct
 import threading
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +28,8 @@ if TYPE_CHECKING:
     import canopen
 
 HEARTBEAT_S = 0.1
+FIRST_HEARTBEATS, FIRST_HEARTBEAT_S = 3, 0.02
+"""So many heartbeats come before the first set-point, with this period."""
 LEASE_S = 0.25
 """How old the lease on set-points may be (contract with the rig's leases)."""
 _HEARTBEAT_ID = 0x700
@@ -41,6 +49,9 @@ class CanopenNetwork:
         self.cycle = Cycle(f"canopen {session.name}")
         self.heartbeats = 0
         """Own heartbeats sent since it was opened."""
+        self._row_from = 0  # of them, before the lease came into force
+        self._hurry_until = FIRST_HEARTBEATS
+        self._due_s = 0.0
         self._foreign = 0
         self._users = 0
         self._lock = threading.RLock()
@@ -64,11 +75,12 @@ class CanopenNetwork:
             if self._users == 0:
                 self._network = _shared_network(self.session)
                 self.session.open()
-                self.heartbeats = self._foreign = 0
+                self.heartbeats = self._foreign = self._row_from = 0
+                self._hurry_until, self._due_s = FIRST_HEARTBEATS, 0.0
                 own_id = _HEARTBEAT_ID + self.own_node
                 self._ends = [
                     self.session.subscribe(own_id, self._on_own_id),
-                    self.cycle.add(self._heartbeat, HEARTBEAT_S, self._on_error),
+                    self.cycle.add(self._heartbeat, FIRST_HEARTBEAT_S, self._on_error),
                     self.cycle.add(self.session.look, 5 * _LOOK_S, self._on_error),
                 ]
             self._users += 1
@@ -96,10 +108,27 @@ class CanopenNetwork:
         """Whether the control loop still asks for blocks."""
         return self.lease.in_force(LEASE_S)
 
+    def greet(self) -> int:
+        """A node has been started: let quick heartbeats follow. Returns how many there were before."""
+        self._hurry_until = max(self._hurry_until, self.heartbeats + FIRST_HEARTBEATS)
+        return self.heartbeats
+
+    def heartbeats_since(self, count: int) -> int:
+        """Heartbeats sent beyond `count` since the lease is in force; 0 while it is not."""
+        return self.heartbeats - max(count, self._row_from) if self.lease_in_force() else 0
+
     def _heartbeat(self) -> None:
-        if self.lease_in_force() and self.session.failure is None:
-            self.session.send(_HEARTBEAT_ID + self.own_node, _OPERATIONAL)
-            self.heartbeats += 1
+        if not self.lease_in_force() or self.session.failure is not None:
+            self._row_from = self.heartbeats
+            self._hurry_until = self.heartbeats + FIRST_HEARTBEATS
+            self._due_s = 0.0
+            return
+        now_s = time.monotonic()
+        if now_s < self._due_s and self.heartbeats >= self._hurry_until:
+            return
+        self.session.send(_HEARTBEAT_ID + self.own_node, _OPERATIONAL)
+        self.heartbeats += 1
+        self._due_s = now_s + HEARTBEAT_S - 0.5 * FIRST_HEARTBEAT_S
 
     def _on_own_id(self, data: bytes, timestamp_s: float) -> None:
         self._foreign += 1

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from drivers.can.canopen_network import CanopenNetwork
+from drivers.can.canopen_network import FIRST_HEARTBEATS, CanopenNetwork
 from drivers.can.objects import ObjectRef
 from rigctl.core.errors import DeviceError
 
@@ -109,6 +109,7 @@ class CanopenNode:
         self._boots = 0
         self._heartbeat_s = float("-inf")
         self._late = 0
+        self._met_at = 0
         self._watched = False
         self._failure: DeviceError | None = None
         self._on_failure: Callable[[], None] | None = None
@@ -377,8 +378,14 @@ class CanopenNode:
         """From now on the node must stay operational, send heartbeats, and not reboot."""
         self._heartbeat_s = max(self._heartbeat_s, time.monotonic())
         self._late = 0
+        self._met_at = self.network.greet()
         self._watched = True
         self._ends.append(self.network.cycle.add(self._look, _LOOK_S, self.ended))
+
+    @property
+    def knows_us(self) -> bool:
+        """Whether so many of our heartbeats have gone out that it watches us: set-points come after that."""
+        return self._watched and self.network.heartbeats_since(self._met_at) >= FIRST_HEARTBEATS
 
     def ended(self, error: Exception) -> None:
         """A periodic task of this node has ended by an error: that is a failure of the node."""

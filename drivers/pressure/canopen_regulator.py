@@ -2,8 +2,9 @@
 
 Job: open it only when it is the right device and vents by itself when we are gone; walk its state
 machine; send set-points as a PDO when they change and every 20 ms while the control loop's lease is in
-force; vent when the lease lapses or anything goes wrong. Not its job: control of the pressure (the
-regulator's own), limits (the engine), the safety relay (the watchdog).
+force; vent when the lease lapses or anything goes wrong. The first set-point goes out after our heartbeats,
+so that the regulator watches us by then. Not its job: control of the pressure (the regulator's own), limits
+(the engine), the safety relay (the watchdog).
 
 A CAN controller discards disturbed frames by their CRC; here, beyond that, a frame of a wrong length and an
 actual value outside of the range never become a pressure.
@@ -199,7 +200,7 @@ class CanopenPressureActuator:
             self._counts, self._vented = counts, False
         if not self._node.emergencies:
             self._board.fault("pressure", "")
-        if self._network.lease_in_force():
+        if self._node.knows_us:
             self._send_set_point()
 
     def vent(self) -> None:
@@ -312,7 +313,7 @@ class CanopenPressureActuator:
             if in_force or self._vent_frames > 0:
                 self._vent_frames -= 1
                 self._send_vent()
-        elif in_force:
+        elif in_force and self._node.knows_us:
             self._watch_activation(now_s)
             self._send_set_point()
 

@@ -2,7 +2,8 @@
 
 Job: open it only when it is the right device and blows full air by itself when we are gone; send the flow
 as a PDO when it changes and every 100 ms while the control loop's lease is in force; full air when the lease
-lapses and at closing. Not its job: how much air (the engine).
+lapses and at closing. The first flow goes out after our heartbeats, so that the device watches us by then.
+Not its job: how much air (the engine).
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ class CanopenVentilator:
         self._node.check()
         with self._lock:
             self._counts = counts
-            if self._network.lease_in_force():
+            if self._node.knows_us:
                 self._send(counts)
 
     def diagnose(self, round_trips: int) -> Diagnosis:
@@ -188,7 +189,7 @@ class CanopenVentilator:
             in_force = self._network.lease_in_force()
             if in_force:
                 self._leased = True
-                if self._counts is not None and self._node.failure is None:
+                if self._counts is not None and self._node.failure is None and self._node.knows_us:
                     self._send(self._counts)
             elif self._leased:
                 self._leased = False

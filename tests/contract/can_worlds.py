@@ -10,7 +10,7 @@ import math
 import os
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -58,13 +58,24 @@ class _Line(threading.Thread):
             self._signals.publish(now_ns, pressure_bar=values, regulator_pressure_bar=values)
 
 
+class _Signals(RigSignals):
+    """Signals that say when something is commanded."""
+
+    on_command: Callable[[], None] | None = None
+
+    def set(self, **values: float | bool) -> None:
+        super().set(**values)
+        if self.on_command is not None:
+            self.on_command()
+
+
 class EmulatedWorld:
     """Drivers on a virtual CAN bus with the bench's nodes; real time."""
 
     def __init__(self, folder: Path, bench: BenchCanSettings | None = None, **context: Any) -> None:
         self.channel = f"contract-{os.getpid()}-{next(_channels)}"
         self.bus = can.Bus(interface="virtual", channel=self.channel, ignore_config=True)
-        self.signals = RigSignals()
+        self.signals = _Signals()
         self.bench = BenchCan(self.bus, self.signals, bench)
         self.bench.start()
         self.line = _Line(self.signals)
@@ -99,6 +110,17 @@ class EmulatedWorld:
         while not condition() and time.monotonic() < end_s:
             self.run(0.02)
         return bool(condition())
+
+    def run_until_idle(self, condition: Any, timeout_s: float = 3.0) -> bool:
+        """The same, while nobody asks for blocks."""
+        end_s = time.monotonic() + timeout_s
+        while not condition() and time.monotonic() < end_s:
+            time.sleep(0.005)
+        return bool(condition())
+
+    def on_command(self, call: Callable[[], None]) -> None:
+        """Have something called in the nodes' thread whenever a node commands the plant."""
+        self.signals.on_command = call
 
     def line_bar(self) -> float:
         return self.line.pressure_bar
