@@ -100,6 +100,11 @@ class ClockFit:
         """Largest delay of the newest batch beyond the shortest one."""
         return self._jitter_s
 
+    def recent_rates(self, count: int) -> Float:
+        """Rates between the earliest arrivals of the newest finished bins, Hz; fewer at the start."""
+        late = [late_s for _, _, late_s in self._bins][:-1][-count - 1 :]
+        return 1.0 / self.nominal_s / (1.0 + np.diff(late) / (self._per_bin * self.nominal_s))
+
     def add(self, numbers: Int, arrivals_s: Float) -> None:
         """Take a batch of samples: their numbers, rising, and when they arrived."""
         if len(numbers) == 0:

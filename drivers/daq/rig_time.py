@@ -19,12 +19,17 @@ from drivers.daq.source import Master
 from rigctl.core.errors import DeviceError
 from rigctl.core.units import NS_PER_S
 
-WARM_S = 0.5  # what a sound server does at its start says nothing of the clock
+WARM_S = 0.5
+# A sound server first hands out what waited in its buffers, in a burst: frames come ever earlier until that
+# is over, and only then do they tell the clock. A source at a wrong rate does so for ever.
+BURST_S, BURST_MAX_S = 0.005, 2.0
 # all callbacks of so long are late: frames are missing, and it is not a machine that was busy for a while
 GAP_SEEN_S = 2.0
 RATE_TOLERANCE = 0.005
-# frames may come late for a while (a stalled machine), but not early
-EARLY_SLACK_S, LATE_SLACK_S = 0.05, 1.0
+# Too fast: the earliest arrivals of so many bins in a row are each earlier, and by more than jitter. A stall
+# that ends, or a server that shortens its buffer, makes one step. Too slow: frames may come late for a while.
+FAST_BINS, JITTER_SLACK = 3, 0.02
+LATE_SLACK_S = 1.0
 RATE_AFTER_S = 1.0
 
 
@@ -102,10 +107,12 @@ class SoundTime:
         self._fit = ClockFit(master.rate_hz)
         self._gap_limit_s = gap_limit_s
         self._max_drift_ppm = max_drift_ppm
-        self._first: tuple[int, float] | None = None
-        self._settled = False
+        self._begin_s: float | None = None  # of the first frames
+        self._earliest_s = float("inf")  # arrival minus nominal time, at the start
+        self._steady_from_s = 0.0
+        self._first: tuple[int, float] | None = None  # since it has settled
         self._newest: tuple[int, float] = (0, now_s)
-        self._lateness: deque[tuple[float, float]] = deque()
+        self._lateness = SlidingMinimum(GAP_SEEN_S)
         self.origin = 0
 
     @property
@@ -121,28 +128,28 @@ class SoundTime:
     @property
     def warm(self) -> bool:
         """See `RigTime`."""
-        return self._first is not None and self._newest[1] - self._first[1] >= 2.0 * WARM_S
+        return self._first is not None and self._newest[1] - self._first[1] >= WARM_S
 
     def update(self, now_s: float) -> None:
         """See `RigTime`."""
         self._master.check()
         frames, arrivals_s = self._master.stamps()
         if len(frames):
-            if self._first is None:
-                self._first = (int(frames[0]), float(arrivals_s[0]))
             self._newest = (int(frames[-1]), float(arrivals_s[-1]))
-            if not self._settled and self._newest[1] - self._first[1] >= WARM_S:
-                self._settled = True
+            if self._first is None and self._steady(frames, arrivals_s):
+                self._first = self._newest
                 self._fit = ClockFit(self._master.rate_hz)
             missing = False
-            if self._settled and self._fit.ready:
+            if self._first is not None and self._fit.ready:
                 late = arrivals_s - self._fit.line.host_s(frames)
-                self._lateness.extend(zip(arrivals_s.tolist(), late.tolist(), strict=True))
+                for arrival_s, late_s in zip(arrivals_s.tolist(), late.tolist(), strict=True):
+                    self._lateness.add(arrival_s, late_s)
                 missing = bool(late.min() > self._gap_limit_s)
             if not missing:  # the fit must not follow a clock that has lost frames
                 self._fit.add(frames, arrivals_s)
-            self._check_rate()
-            self._check_gap()
+            if self._first is not None:
+                self._check_rate(*self._first)
+                self._check_gap()
         silent_s = now_s - self._master.last_arrival_s()
         if silent_s > self._master.settings.silent_s:
             raise self._error(
@@ -167,18 +174,30 @@ class SoundTime:
         """See `RigTime`."""
         return self._master.frames() >= self.frame(end_ns)
 
-    def _check_rate(self) -> None:
-        assert self._first is not None
-        elapsed_s = self._newest[1] - self._first[1]
+    def _steady(self, frames: NDArray[np.int64], arrivals_s: NDArray[np.float64]) -> bool:
+        """Whether what waited in the server's buffers has come."""
+        if self._begin_s is None:
+            self._begin_s = float(arrivals_s[0])
+        late_s = arrivals_s - frames / self._master.rate_hz
+        at = int(np.argmin(late_s))
+        if late_s[at] < self._earliest_s - BURST_S:
+            self._earliest_s = float(late_s[at])
+            self._steady_from_s = float(arrivals_s[at])
+        newest_s = self._newest[1]
+        return newest_s - self._steady_from_s >= WARM_S or newest_s - self._begin_s >= BURST_MAX_S
+
+    def _check_rate(self, first_frame: int, first_s: float) -> None:
+        nominal_hz = self._master.rate_hz
+        elapsed_s = self._newest[1] - first_s
         if elapsed_s < RATE_AFTER_S:
             return
-        rate_hz = (self._newest[0] - self._first[0]) / elapsed_s
-        nominal_hz = self._master.rate_hz
-        off = rate_hz / nominal_hz - 1.0
-        slack_s = EARLY_SLACK_S if off > 0.0 else LATE_SLACK_S
-        if abs(off) > RATE_TOLERANCE + slack_s / elapsed_s:
+        rates = self._fit.recent_rates(FAST_BINS) / nominal_hz
+        rate = (self._newest[0] - first_frame) / elapsed_s / nominal_hz
+        fast = len(rates) == FAST_BINS and float(rates.min()) > 1.0 + RATE_TOLERANCE + JITTER_SLACK
+        if fast or rate < 1.0 - RATE_TOLERANCE - LATE_SLACK_S / elapsed_s:
             raise self._error(
-                f"delivers {rate_hz:.0f} frames/s instead of {nominal_hz:.0f}.",
+                f"delivers {(np.median(rates) if fast else rate) * nominal_hz:.0f} frames/s instead of "
+                f"{nominal_hz:.0f}.",
                 "Set rate_hz to the device's own rate.",
             )
         if self._fit.full and abs(self._fit.drift_ppm) > self._max_drift_ppm:

@@ -173,7 +173,7 @@ class SyntheticMaster:
     name = "microphone"
     rate_hz = 40_000.0
 
-    def __init__(self, rate_hz=40_000.0):
+    def __init__(self, rate_hz=40_000.0, delay_s=lambda t_s: 0.0):
         self.settings = SimpleNamespace(delay_s=0.0, silent_s=0.5)
         self.true_hz = rate_hz
         self.count = 0
@@ -181,11 +181,12 @@ class SyntheticMaster:
         self.now_s = 0.0
         self.random = np.random.default_rng(3)
         self.waiting = []
+        self.delay_s = delay_s  # beyond jitter, of the frames of a time
 
     def until(self, now_s):
         while (t_s := (self.count + self.lost + 200) / self.true_hz) <= now_s:
             self.count += 200
-            self.waiting.append((self.count, t_s + self.random.uniform(0.0, 0.002)))
+            self.waiting.append((self.count, t_s + self.random.uniform(0.0, 0.002) + self.delay_s(t_s)))
             self.now_s = t_s
 
     def check(self):
@@ -244,3 +245,38 @@ def test_a_wrong_rate_is_found():
     master = SyntheticMaster(44_100.0)
     with pytest.raises(DeviceError, match=r"delivers 44\d\d\d frames/s instead of 40000"):
         run_master(master, 0.05, 5.0, sound_time(master))
+
+
+@pytest.mark.parametrize("waited_s", [0.1, 0.4])
+@pytest.mark.parametrize("burst_s", [0.05, 0.3, 0.8])
+def test_what_waited_in_the_server_at_the_start_is_no_rate(waited_s, burst_s):
+    """It had taken `waited_s` of sound before it was heard, and hands it out within `burst_s`."""
+    master = SyntheticMaster(40_004.0, delay_s=lambda t_s: waited_s * max(0.0, 1.0 - t_s / burst_s))
+    rig_time = sound_time(master)
+    run_master(master, 0.05, 15.0, rig_time)
+    assert rig_time.warm
+    assert rig_time.drift_ppm == pytest.approx(100.0, abs=25.0)
+    assert rig_time.jitter_s < 0.01
+
+
+@pytest.mark.parametrize("until_s", [0.7, 1.05, 2.3])
+def test_late_callbacks_that_come_in_time_again_are_no_rate(until_s):
+    """A machine that was busy, or a server that shortens its buffer: one step, however long it was late."""
+    master = SyntheticMaster(delay_s=lambda t_s: 0.3 if t_s < until_s else 0.0)
+    run_master(master, 0.05, 15.0, sound_time(master))
+
+
+@pytest.mark.parametrize(
+    ("rate_hz", "words"),
+    [
+        (48_000.0, "delivers 4[78]... frames/s instead of 40000"),
+        (42_000.0, "delivers 4[12]... frames/s instead of 40000"),
+        (40_400.0, "drifts by"),
+        (39_600.0, "has lost"),  # a clock that is slow cannot be told from one that loses frames
+        (32_000.0, "has lost"),
+    ],
+)
+def test_other_wrong_rates_are_found(rate_hz, words):
+    master = SyntheticMaster(rate_hz)
+    with pytest.raises(DeviceError, match=words):
+        run_master(master, 0.05, 20.0, sound_time(master))
