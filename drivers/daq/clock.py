@@ -115,15 +115,17 @@ class ClockFit:
         for start, stop in zip(starts, [*starts[1:], len(bins)], strict=True):
             best = int(start + np.argmin(lateness[start:stop]))
             self._take(int(bins[best]), int(numbers[best]), float(lateness[best]))
-        self._line = None
         self._jitter_s = float(np.max(arrivals_s - self.line.host_s(numbers)))
 
     def _take(self, at: int, number: int, lateness_s: float) -> None:
         if self._bins and self._bins[-1][0] == at:
             if lateness_s < self._bins[-1][2]:
                 self._bins[-1] = (at, number, lateness_s)
+                if len(self._bins) <= MIN_BINS:  # otherwise the fit leaves the newest bin out
+                    self._line = None
         else:
             self._bins.append((at, number, lateness_s))
+            self._line = None
 
     def _fit(self) -> Line:
         if not self._bins:

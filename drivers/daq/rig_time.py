@@ -88,6 +88,41 @@ class HostTime:
         return now_s >= self._origin_s + end_ns * 1e-9
 
 
+class SlidingMinimum:
+    """Smallest of the values of the newest `span_s`, at a constant price for each of them."""
+
+    def __init__(self, span_s: float) -> None:
+        self._span_s = span_s
+        self._times: deque[float] = deque()
+        self._candidates: deque[tuple[float, float]] = deque()  # rising: none that a later, smaller one beats
+
+    def add(self, time_s: float, value: float) -> None:
+        """Take a value; times rise."""
+        times, candidates = self._times, self._candidates
+        times.append(time_s)
+        while candidates and candidates[-1][1] >= value:
+            candidates.pop()
+        candidates.append((time_s, value))
+        begin_s = time_s - self._span_s
+        while times[0] < begin_s:
+            times.popleft()
+        while candidates[0][0] < begin_s:
+            candidates.popleft()
+
+    def __len__(self) -> int:
+        return len(self._times)
+
+    @property
+    def covered_s(self) -> float:
+        """From the oldest to the newest value."""
+        return self._times[-1] - self._times[0] if self._times else 0.0
+
+    @property
+    def minimum(self) -> float:
+        """The smallest value; there must be one."""
+        return self._candidates[0][1]
+
+
 class SoundTime:
     """The microphone's frames as the rig's time.
 
@@ -208,12 +243,9 @@ class SoundTime:
             )
 
     def _check_gap(self) -> None:
-        newest_s = self._newest[1]
-        while self._lateness and self._lateness[0][0] < newest_s - GAP_SEEN_S:
-            self._lateness.popleft()
-        if len(self._lateness) < 3 or newest_s - self._lateness[0][0] < 0.8 * GAP_SEEN_S:
+        if len(self._lateness) < 3 or self._lateness.covered_s < 0.8 * GAP_SEEN_S:
             return
-        missing_s = min(late for _, late in self._lateness)
+        missing_s = self._lateness.minimum
         if missing_s > self._gap_limit_s:
             raise self._error(
                 f"has lost {1e3 * missing_s:.0f} ms of sound ({missing_s * self._master.rate_hz:.0f} frames) "
