@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from rigctl.core.channels import MICROPHONE, ChannelData
 from rigctl.core.errors import RecordingError
+from rigctl.core.units import unit_of
 from rigctl.recording.durable import disk_error
 
 if TYPE_CHECKING:
@@ -184,8 +185,6 @@ def _table(path: Path, names: list[str], table: NDArray[Any]) -> None:
 
 def _mat(path: Path, file: BrakingFile) -> None:
     from scipy.io import savemat
-
-    from rigctl.recording.nexus import unit_of
 
     channels = {}
     for name in file.channels:

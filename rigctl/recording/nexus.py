@@ -18,25 +18,9 @@ import numpy as np
 
 from rigctl import __version__
 from rigctl.core.channels import MICROPHONE
+from rigctl.core.units import unit_of
 from rigctl.recording.braking import StoredBraking, StoredChannel
 from rigctl.recording.hdf5_image import Group, Image
-
-_UNITS_BY_SUFFIX = {
-    "hz": "Hz",
-    "db": "dB",
-    "dba": "dB(A)",
-    "s": "s",
-    "bar": "bar",
-    "degc": "°C",
-    "rpm": "1/min",
-    "nm": "N·m",
-    "pa": "Pa",
-}
-
-
-def unit_of(name: str) -> str:
-    """Unit that the suffix of a name states, "" for a plain number: "start_s" is in "s"."""
-    return _UNITS_BY_SUFFIX.get(name.rpartition("_")[2], "") if "_" in name else ""
 
 
 def start_time(braking: StoredBraking) -> str:
