@@ -1,16 +1,111 @@
-"""The model page."""
+"""The model page: what the brake model says about stability, and what would help.
+
+Job: put the parts together (head, sliders, three tabs), remember the layout. Not its job: what they show.
+"""
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QLabel, QVBoxLayout
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtWidgets import QSplitter, QTabWidget, QVBoxLayout
 
 from rigctl.gui.pages.base import Page
+from rigctl.gui.pages.model.header import ModelHeader
+from rigctl.gui.pages.model.locus_tab import LocusTab
+from rigctl.gui.pages.model.sliders_panel import SlidersPanel
+from rigctl.gui.pages.model.state import ModelState
 from rigctl.gui.services import Services
 
 
 class ModelPage(Page):
-    """The model page."""
+    """Root locus, stability map, ranking of design modifications."""
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
-        QVBoxLayout(self).addWidget(QLabel("model"))
+        self.state = ModelState(services, self)
+        self.header = ModelHeader(self.state, services.theme, services.config_folder / "brakes")
+        self.sliders = SlidersPanel(self.state, services.theme)
+        self.locus = LocusTab(self.state, services)
+        self.tabs = QTabWidget()
+        self.tabs.setObjectName("model-tabs")
+        self.tabs.setDocumentMode(True)
+        self.tabs.addTab(self.locus, self.tr("Root &locus"))
+        self.split = QSplitter(Qt.Orientation.Horizontal)
+        self.split.addWidget(self.sliders)
+        self.split.addWidget(self.tabs)
+        self.split.setStretchFactor(1, 1)
+        self.split.setChildrenCollapsible(False)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.header)
+        column.addWidget(self.split, 1)
+        services.theme.changed.connect(self._restyle)
+        self._restyle()
+        self._begun = False
+        self._brake: Path | None = self.header.brake.first()
+        self._other: Path | None = None
+
+    def _restyle(self) -> None:
+        px = self.services.theme.px
+        self.split.setHandleWidth(px(0.5))
+        self.split.setSizes([px(38), px(100)])
+
+    # -- page -------------------------------------------------------------------------------------
+
+    def activated(self) -> None:
+        """Read the brake when first looked at; let the brake move."""
+        if not self._begun:
+            self._begun = True
+            if self._brake is not None:
+                self.header.brake.setValue(self._brake)
+                self.state.open(self._brake)
+            if self._other is not None:
+                self.header.other.setValue(self._other)
+                self.state.compare(self._other)
+        self.locus.view.setSeen(True)
+
+    def deactivated(self) -> None:
+        """Nothing moves unseen."""
+        self.locus.view.setSeen(False)
+
+    def open(self, **what: Any) -> None:
+        """``brake=path``: study that brake file."""
+        if "brake" in what:
+            path = Path(what["brake"])
+            self.header.brake.setValue(path)
+            self.state.open(path)
+
+    def save_layout(self, settings: QSettings) -> None:
+        """Remember files and splitters."""
+        brake, other = self.header.brake.value(), self.header.other.value()
+        settings.setValue("brake", "" if brake is None else str(brake))
+        settings.setValue("other", "" if other is None else str(other))
+        settings.setValue("split", self.split.saveState())
+        settings.setValue("tab", self.tabs.currentIndex())
+        self.locus.save_layout(settings)
+
+    def restore_layout(self, settings: QSettings) -> None:
+        """Files and splitters as they were left; files that are gone are forgotten."""
+        for name in ("brake", "other"):
+            path = Path(str(settings.value(name, "") or ""))
+            if path.suffix == ".toml" and path.exists():
+                setattr(self, f"_{name}", path)
+        split = settings.value("split")
+        if split is not None:
+            self.split.restoreState(split)
+        self.tabs.setCurrentIndex(int(str(settings.value("tab", 0))))
+        self.locus.restore_layout(settings)
+
+    def help_text(self) -> str:
+        """What F1 shows."""
+        return self.tr(
+            "<b>Model</b><p>Where does the brake model become unstable, in which mode, and what would help? "
+            "Move a slider: poles move along their paths. Right of the axis a mode grows: squeal.</p>"
+            "<p>Click a pole or a row of the list, and the brake moves in that mode. "
+            "The second tab shows the stable region with measured squeal in it, the third what to change.</p>"
+            "<p>Keys: arrows and Page Up/Down move a slider, Tab goes on, type a number for an exact value. "
+            "Right click on a picture: copy or save it.</p>"
+        )
