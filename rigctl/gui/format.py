@@ -6,6 +6,7 @@ Pure functions without Qt. Not their job: colours and places.
 from __future__ import annotations
 
 import math
+from datetime import datetime
 
 MISSING = "—"
 
@@ -38,6 +39,14 @@ def frequency_text(hertz: float | None) -> str:
     if hertz is None or not math.isfinite(hertz):
         return MISSING
     return f"{hertz:.0f}\u202fHz" if hertz < 10_000 else f"{hertz / 1000:.2f}\u202fkHz"
+
+
+def clock_text(utc: str) -> str:
+    """Local time of day of an ISO time, "12:03:10"; a dash when it is none."""
+    try:
+        return datetime.fromisoformat(utc).astimezone().strftime("%H:%M:%S")
+    except ValueError:
+        return MISSING
 
 
 def bytes_text(count: float | None) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 
 from PySide6.QtCore import QSettings
 
+from rigctl.gui.rig.alarms import AlarmModel
 from rigctl.gui.rig.connection import RigConnection
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.work import Work
@@ -39,6 +40,8 @@ class Services:
         ``navigate("data", braking=path)`` shows a page and calls its `open`.
     notify : callable
         ``notify("Saved as …")``: a short line in the alarm bar, no dialog.
+    alarms : AlarmModel or None
+        The alarms of the session that is watched; None in tests that have none.
     """
 
     rig: RigConnection
@@ -49,6 +52,7 @@ class Services:
     config_folder: Path
     navigate: Callable[..., None]
     notify: Callable[[str], None]
+    alarms: AlarmModel | None = None
 
     def show(self, page: str, **what: Any) -> None:
         """Short for `navigate`."""

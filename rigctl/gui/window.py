@@ -23,10 +23,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from rigctl.gui.format import clock_text
 from rigctl.gui.frame.alarmbar import AlarmBar
 from rigctl.gui.frame.statebar import RigFrame, StateBar
 from rigctl.gui.pages import PAGES
 from rigctl.gui.pages.base import Page
+from rigctl.gui.rig.alarm_list import Alarm
+from rigctl.gui.rig.alarms import AlarmModel
 from rigctl.gui.rig.connection import RigConnection
 from rigctl.gui.rig.state import RigState
 from rigctl.gui.services import Services
@@ -47,7 +50,10 @@ class MainWindow(QMainWindow):
         self.setWindowTitle(WINDOW_TITLE)
         self.work = Work(self)
         self.rig = rig
-        self.services = Services(rig, self.work, theme, settings, data, configs, self.navigate, self._notify)
+        self.alarms = AlarmModel(rig, self.work, self)
+        self.services = Services(
+            rig, self.work, theme, settings, data, configs, self.navigate, self._notify, self.alarms
+        )
         self._theme = theme
         self._settings = settings
         self._pages: dict[str, Page] = {}
@@ -61,6 +67,8 @@ class MainWindow(QMainWindow):
         rig.stateChanged.connect(self._show_state)
         rig.refused.connect(self._notify)
         self.alarm_bar.stopPressed.connect(rig.stop)
+        self.alarm_bar.acknowledgePressed.connect(self.alarms.acknowledge_newest)
+        self.alarms.newestChanged.connect(self._show_alarm)
         self._app().installEventFilter(self)
         self._restore()
 
@@ -157,6 +165,14 @@ class MainWindow(QMainWindow):
 
     def _notify(self, text: str) -> None:
         self.alarm_bar.show_news(text)
+
+    def _show_alarm(self, alarm: Alarm | None) -> None:
+        if alarm is None:
+            self.alarm_bar.show_alarm("", severity="")
+            return
+        times = self.tr(" ({0} times)").format(alarm.count) if alarm.count > 1 else ""
+        text = f"{clock_text(alarm.last_utc)}  {alarm.words}{times} {alarm.remedy}".rstrip()
+        self.alarm_bar.show_alarm(text, severity=alarm.severity)
 
     # -- what holds everywhere --------------------------------------------------------------------
 

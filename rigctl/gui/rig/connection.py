@@ -97,5 +97,8 @@ class RigConnection(QObject):
     def rate(self, rating: int) -> None:
         """Subjective noise rating 1 (nothing heard) to 9 of the present or last braking."""
 
+    def acknowledge_alarm(self, alarm: str) -> None:
+        """A person has seen an alarm; the controller journals it."""
+
     def close(self) -> None:
         """Leave; the run goes on."""

@@ -1,0 +1,254 @@
+"""The list of alarms: what the journal and the live values say that needs a person.
+
+Job: alarms from records of the journal and from a `RigState` near the watchdog's limits, each with severity,
+time, words, remedy, number of times, and who has acknowledged it. The same alarm again is counted, not
+repeated. Plain Python, no Qt. Not its job: showing it, writing acknowledgements (`rigctl.gui.rig.alarms`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from typing import Any
+
+from rigctl.core.journal import Record
+from rigctl.gui.rig.near_limits import LimitWatch
+from rigctl.gui.rig.state import RigState
+
+WARNING, ALARM = "warning", "alarm"
+LOW_DISK_BYTES = 1e9
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """One entry.
+
+    Attributes
+    ----------
+    key : str
+        What it is, e.g. "trip:estop"; the same key is counted while nobody has acknowledged it.
+    severity : str
+        "warning" or "alarm".
+    utc, last_utc : str
+        First and newest time, ISO 8601.
+    count : int
+    active : bool
+        The condition lasts, as far as is known.
+    acknowledged_by, acknowledged_utc : str
+        Empty while nobody has.
+    """
+
+    key: str
+    severity: str
+    utc: str
+    words: str
+    remedy: str = ""
+    last_utc: str = ""
+    count: int = 1
+    active: bool = False
+    acknowledged_by: str = ""
+    acknowledged_utc: str = ""
+
+    @property
+    def open(self) -> bool:
+        """True while nobody has acknowledged it."""
+        return not self.acknowledged_by
+
+
+@dataclass(frozen=True)
+class _Found:
+    key: str
+    severity: str
+    words: str
+    remedy: str = ""
+
+
+class AlarmList:
+    """All alarms of a campaign, newest last."""
+
+    def __init__(self) -> None:
+        self.alarms: list[Alarm] = []
+        self.watch = LimitWatch(None, {})
+
+    def clear(self) -> None:
+        """Another campaign."""
+        self.alarms = []
+
+    def newest_open(self) -> Alarm | None:
+        """What the alarm bar shows: the newest that nobody has acknowledged, alarms before warnings."""
+        opened = [alarm for alarm in self.alarms if alarm.open]
+        worst = [alarm for alarm in opened if alarm.severity == ALARM] or opened
+        return max(worst, key=lambda alarm: alarm.last_utc) if worst else None
+
+    # -- from the journal ------------------------------------------------------------------------
+
+    def take_records(self, records: Iterable[Record]) -> bool:
+        """New records; True when the list has changed."""
+        changed = False
+        for record in records:
+            if record.kind == "alarm_acknowledged":
+                payload = record.payload
+                changed |= self.acknowledge(
+                    str(payload.get("alarm", "")), str(payload.get("who") or record.source), record.utc
+                )
+            elif (record.source, record.kind) == ("watchdog", "reset"):
+                changed |= self._reset(record)
+            elif (found := found_in(record)) is not None:
+                self.raise_alarm(found.key, found.severity, found.words, found.remedy, record.utc)
+                changed = True
+        return changed
+
+    def _reset(self, record: Record) -> bool:
+        who = f"{record.payload.get('who')}: {record.payload.get('reason')}"
+        changed = False
+        for alarm in list(self.alarms):
+            if alarm.key.startswith("trip:"):
+                changed |= self.acknowledge(alarm.key, who, record.utc)
+        return changed
+
+    # -- from live values ------------------------------------------------------------------------
+
+    def take_state(self, state: RigState, now: datetime | None = None) -> bool:
+        """Newest readings; True when the list has changed."""
+        utc = (now or datetime.now(UTC)).isoformat(timespec="milliseconds")
+        before = self.alarms
+        self.alarms = list(before)
+        near = self.watch.near(state.readings)
+        for key, words, remedy in near:
+            self._hold(f"near:{key}", words, remedy, utc)
+        low_disk = state.disk_left_bytes is not None and state.disk_left_bytes < LOW_DISK_BYTES
+        if low_disk:
+            words = f"Only {(state.disk_left_bytes or 0.0) / 1e9:.2f} GB of disk are left."
+            self._hold("disk", words, "Free some space before the next braking.", utc)
+        lasting = {f"near:{key}" for key, _, _ in near} | ({"disk"} if low_disk else set())
+        for place, alarm in enumerate(self.alarms):
+            if alarm.active and alarm.key not in lasting:
+                self.alarms[place] = replace(alarm, active=False)
+        return self.alarms != before
+
+    def _hold(self, key: str, words: str, remedy: str, utc: str) -> None:
+        """A lasting condition: one entry from its beginning to its end, its words follow the value."""
+        for place, alarm in enumerate(self.alarms):
+            if alarm.key == key and alarm.active:
+                if alarm.open and alarm.words != words:
+                    self.alarms[place] = replace(alarm, words=words)
+                return
+        self.raise_alarm(key, WARNING, words, remedy, utc, active=True)
+
+    # -- changes ---------------------------------------------------------------------------------
+
+    def raise_alarm(
+        self, key: str, severity: str, words: str, remedy: str, utc: str, *, active: bool = False
+    ) -> None:
+        """A new alarm, or once more one that nobody has acknowledged."""
+        for place, alarm in enumerate(self.alarms):
+            if alarm.key == key and alarm.open:
+                self.alarms[place] = replace(
+                    alarm, words=words, remedy=remedy, last_utc=utc, count=alarm.count + 1, active=active
+                )
+                return
+        self.alarms.append(Alarm(key, severity, utc, words, remedy, utc, active=active))
+
+    def acknowledge(self, key: str, who: str, utc: str) -> bool:
+        """Somebody has seen all that is open under this key; True when there was something."""
+        changed = False
+        for place, alarm in enumerate(self.alarms):
+            if alarm.key == key and alarm.open:
+                self.alarms[place] = replace(alarm, acknowledged_by=who or "somebody", acknowledged_utc=utc)
+                changed = True
+        return changed
+
+
+# -- words of the records ----------------------------------------------------------------------------
+
+
+def _text(payload: dict[str, Any], *keys: str) -> str:
+    return next((str(payload[key]) for key in keys if payload.get(key)), "")
+
+
+def _sentence(text: str) -> str:
+    text = text.strip()
+    return text[:1].upper() + text[1:] + ("" if not text or text[-1] in ".!?" else ".")
+
+
+def _trip(p: dict[str, Any]) -> _Found:
+    return _Found(f"trip:{p.get('cause')}", ALARM, _sentence(_text(p, "words", "cause")), _text(p, "remedy"))
+
+
+def _further(p: dict[str, Any]) -> _Found:
+    words = f"Further cause: {_text(p, 'words', 'cause')}"
+    return _Found(f"further:{p.get('cause')}", WARNING, _sentence(words), _text(p, "remedy"))
+
+
+def _refused(what: str) -> Callable[[dict[str, Any]], _Found]:
+    def found(p: dict[str, Any]) -> _Found:
+        words = f"{what} was refused: {_text(p, 'words', 'why')}"
+        return _Found(f"refused:{what}:{p.get('why')}", WARNING, _sentence(words), _text(p, "remedy"))
+
+    return found
+
+
+def _plain(severity: str, words: str, remedy: str = "") -> Callable[[dict[str, Any]], _Found]:
+    def found(p: dict[str, Any]) -> _Found:
+        detail = _text(p, "words", "error", "cause", "reason")
+        return _Found(words, severity, _sentence(f"{words}: {detail}" if detail else words), remedy)
+
+    return found
+
+
+def _broken_off(p: dict[str, Any]) -> _Found | None:
+    reason = _text(p, "reason")
+    if reason.endswith("by the operator") or reason.startswith("safety trip"):
+        return None  # a person knows, or the trip itself is the alarm
+    words = f"Braking {p.get('index')} was broken off: {reason}"
+    return _Found("braking_broken_off", WARNING, _sentence(words), "It can be repeated with `Repeat`.")
+
+
+def _recording_failed(p: dict[str, Any]) -> _Found:
+    words = f"Braking {p.get('index')} was not recorded: {_text(p, 'error')}"
+    return _Found("recording_failed", ALARM, _sentence(words), "See the disk and logs/recorder.log.")
+
+
+def _run_ended(p: dict[str, Any]) -> _Found | None:
+    if p.get("outcome") != "failed":
+        return None
+    return _Found("run_failed", ALARM, _sentence(f"The run has failed: {_text(p, 'cause')}"), "See the logs.")
+
+
+_RECORDS: dict[tuple[str, str], Callable[[dict[str, Any]], _Found | None]] = {
+    ("watchdog", "trip"): _trip,
+    ("watchdog", "further_cause"): _further,
+    ("watchdog", "refused_arm"): _refused("Arming"),
+    ("watchdog", "refused_disarm"): _refused("Disarming"),
+    ("watchdog", "refused_reset"): _refused("The reset"),
+    ("watchdog", "refused_controller"): _refused("A second controller"),
+    ("watchdog", "refused_message"): _refused("A message to the watchdog"),
+    ("watchdog", "refused_sample"): _refused("A sample of the safety channel"),
+    ("watchdog", "safe_state_not_confirmed"): _plain(
+        ALARM, "The safe state is not confirmed", "Do not go near the rig; look at pressure and speed there."
+    ),
+    ("watchdog", "rig_gone"): _plain(
+        ALARM, "The safety channel has gone", "See logs/rig.log and the cables."
+    ),
+    ("controller", "not_at_rest_after_trip"): _plain(
+        ALARM, "The rig is not at rest after the trip", "Do not go near it; press the emergency stop."
+    ),
+    ("controller", "rig_lost_after_trip"): _plain(ALARM, "The rig was lost after the trip", "See logs."),
+    ("controller", "run_down_failed"): _plain(
+        ALARM, "The rig could not be run down", "The relay has dropped; look at pressure and speed there."
+    ),
+    ("controller", "recorder_lost"): _plain(ALARM, "The recorder has gone", "See logs/recorder.log."),
+    ("controller", "failed"): _plain(ALARM, "The controller has failed", "See logs/controller.log."),
+    ("controller", "manual_failed"): _plain(WARNING, "A manual command has failed"),
+    ("controller", "unattended"): _plain(WARNING, "Nobody commanded: the rig was run down", "Take command."),
+    ("controller", "braking_broken_off"): _broken_off,
+    ("recorder", "RECORDING_FAILED"): _recording_failed,
+    ("supervisor", "run_ended"): _run_ended,
+}
+
+
+def found_in(record: Record) -> _Found | None:
+    """The alarm that a record of the journal means, if any."""
+    make = _RECORDS.get((record.source, record.kind))
+    return None if make is None else make(record.payload)
