@@ -1,0 +1,67 @@
+"""A rig connection that moves nothing: it keeps what was asked, and the test says what comes back."""
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+from rigctl.config.loading import load_model
+from rigctl.config.rig import RigConfig
+from rigctl.gui.rig.connection import RigConnection
+from rigctl.gui.rig.state import Readings, RigState, Word
+
+ROOT = Path(__file__).resolve().parents[2]
+RIGS = ROOT / "configs" / "rigs"
+
+MANUAL = RigState(
+    word=Word.READY, mode="manual", rig_name="A", simulated=True, time="real", phase="by hand",
+    commander="anna", commanding=True, enabled=True, relay_closed=True, rig_s=100.0,
+    readings=Readings(100.2, 20.0, 398.0, 123.4, 0.43, 100.0, 20.0, 0.0),
+)  # fmt: skip
+LOCKED = replace(MANUAL, word=Word.LOCKED, enabled=False, relay_closed=False)
+
+
+def simulated_rig() -> RigConfig:
+    """The rig of configs/rigs/simulated.toml."""
+    return load_model(RIGS / "simulated.toml", RigConfig)
+
+
+def session(rig: RigConfig | None = None, **more: Any) -> SimpleNamespace:
+    """What the window knows of a session; the limits are found beside the shipped rig files."""
+    facts = {
+        "rig": rig or simulated_rig(), "campaign": RIGS, "mode": "manual", "time": "real",
+        "run_dir": Path("/nonexistent"), "program": None, "simulated": True,
+    }  # fmt: skip
+    return SimpleNamespace(**{**facts, **more})
+
+
+class RecordingRig(RigConnection):
+    """`asked` holds (method, arguments, keywords)."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.asked: list[tuple[str, tuple, dict]] = []
+
+    def say(self, state: RigState) -> None:
+        """News of the rig."""
+        self.state = state
+        self.stateChanged.emit(state)
+
+    def attach(self, made: SimpleNamespace) -> None:
+        """A session is watched now."""
+        self.session = made
+        self.attached.emit(made)
+
+
+def _keep(name: str):
+    def method(self: RecordingRig, *args: Any, **more: Any) -> None:
+        self.asked.append((name, args, more))
+
+    return method
+
+
+for _name in (
+    "start_manual", "start_program", "resume", "stop", "verb", "take_command", "enable", "disable", "set_speed",
+    "set_pressure", "set_ventilator", "condition", "record", "reset", "note", "rate",
+):  # fmt: skip
+    setattr(RecordingRig, _name, _keep(_name))
