@@ -1,7 +1,7 @@
 """`rigctl calibrations …`: what is calibrated on a rig, by whom, and when the next is due.
 
-Job: where a rig's calibrations are, which hold for a run, the overview on the command line. Not its job:
-making one (the window's Service page), their contents (`rigctl.calibration`).
+Job: which calibrations hold for a run, the overview on the command line. Not its job: making one (the
+window's Service page), their contents (`rigctl.calibration`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rich.console import Console
 from rigctl.app import exit_codes
 from rigctl.app.compose import read_rig
 from rigctl.calibration.record import Calibration, Due
-from rigctl.calibration.store import DueLine, due_lines, history, in_force, rig_folder
+from rigctl.calibration.store import DueLine, calibration_folder, due_lines, history, in_force
 from rigctl.config.rig import RigConfig
 
 _WORDS = {
@@ -28,13 +28,6 @@ _WORDS = {
 }
 
 
-def folder_of(rig: RigConfig, rig_path: Path, data_folder: Path) -> Path:
-    """Folder of a rig's calibrations: named in the rig file, else in the data folder."""
-    if rig.calibrations is not None:
-        return (rig_path.resolve().parent / rig.calibrations.folder).resolve()
-    return rig_folder(data_folder, rig.name)
-
-
 def for_run(rig: RigConfig, rig_path: Path, data_folder: Path) -> tuple[Calibration, ...]:
     """What is in force now, to be frozen with a campaign.
 
@@ -43,7 +36,9 @@ def for_run(rig: RigConfig, rig_path: Path, data_folder: Path) -> tuple[Calibrat
     ConfigError
         A file of the folder cannot be read.
     """
-    return tuple(kept.calibration for kept in in_force(folder_of(rig, rig_path, data_folder)).values())
+    return tuple(
+        kept.calibration for kept in in_force(calibration_folder(rig, rig_path, data_folder)).values()
+    )
 
 
 def register(app: typer.Typer) -> None:
@@ -64,7 +59,7 @@ def _list(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """What holds, what is due. Exit code 1 when one is overdue or a file cannot be read."""
-    folder = folder_of(read_rig(rig), rig, out)
+    folder = calibration_folder(read_rig(rig), rig, out)
     kept, faults = history(folder)
     lines = due_lines(kept, datetime.now(UTC).date())
     if as_json:

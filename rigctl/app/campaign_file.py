@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field
 import rigctl
 from rigctl.app.compose import resolved_paths
 from rigctl.calibration.record import Calibration
+from rigctl.calibration.store import calibration_folder
 from rigctl.config.loading import load_model
 from rigctl.config.rig import RigConfig
 from sequences.program import Program
@@ -110,6 +111,8 @@ def freeze(
         target = f"{CONFIG_FOLDER}/{key.replace('.', '-')}.toml"
         copies[target] = path
         _assign(mapping, key, target)
+    if rig.calibrations is not None:  # outside the campaign: made anew now and then
+        _assign(mapping, "calibrations.folder", str(calibration_folder(rig, rig_path, Path())))
     file = CampaignFile(
         name=name,
         created=datetime.now(UTC).isoformat(timespec="seconds"),

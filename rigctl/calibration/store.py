@@ -20,6 +20,7 @@ import tomli_w
 
 from rigctl.calibration.record import Calibration, Due, Quantity
 from rigctl.config.loading import load_model
+from rigctl.config.rig import RigConfig
 from rigctl.core.errors import ConfigError
 from rigctl.recording.durable import disk_error, publish, write_part
 
@@ -46,6 +47,13 @@ class DueLine:
 def rig_folder(data_folder: Path, rig_name: str) -> Path:
     """Where the calibrations of a rig are kept."""
     return data_folder / FOLDER / (re.sub(r"[^A-Za-z0-9]+", "-", rig_name).strip("-").lower() or "rig")
+
+
+def calibration_folder(rig: RigConfig, rig_file: Path, data_folder: Path) -> Path:
+    """Where the calibrations of a rig are: named in its file, else in the data folder."""
+    if rig.calibrations is not None:
+        return (rig_file.resolve().parent / rig.calibrations.folder).resolve()
+    return rig_folder(data_folder, rig.name)
 
 
 def save(folder: Path, calibration: Calibration) -> Path:

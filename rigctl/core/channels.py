@@ -91,6 +91,10 @@ class ChannelCorrection:
             )
         return replace(spec, scale=spec.scale * self.gain, offset=spec.offset * self.gain + self.offset)
 
+    def removed_from(self, spec: ChannelSpec) -> ChannelSpec:
+        """The channel as it was before; the way back of `applied_to`."""
+        return replace(spec, scale=spec.scale / self.gain, offset=(spec.offset - self.offset) / self.gain)
+
 
 def corrected(specs: Iterable[ChannelSpec], corrections: Iterable[ChannelCorrection]) -> list[ChannelSpec]:
     """Channels with the corrections in force; channels without one stay as they are.

@@ -82,6 +82,8 @@ def test_correction_of_a_channel_leaves_the_samples():
     before = ChannelData(spec, 0, samples).physical()
     assert ChannelData(new, 0, samples).physical() == pytest.approx(1.002 * before - 0.4)
     assert other.scale == 1.0
+    back = correction.removed_from(new)
+    assert (back.scale, back.offset) == pytest.approx((2.0, 1.0))
 
 
 def test_a_changed_chain_wants_a_new_calibration():
