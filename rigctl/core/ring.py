@@ -3,7 +3,8 @@
 Job: one writer (the data acquisition), many readers, no copies but the reader's own. Each channel has a
 count of all samples ever written; readers ask for ranges of that count and are told when they were too
 slow. A plain file in /dev/shm is used because Python 3.11's `multiprocessing.shared_memory` unlinks
-segments that a process only attached to. Not its job: meaning and time of samples.
+segments that a process only attached to. Who writes holds a lock on the file: a reader that waits for samples
+knows at once when nobody is left who could write them. Not its job: meaning and time of samples.
 
 Layout: 8 bytes magic, 8 bytes header length, JSON header, then per channel one 64-byte line with the
 written count (uint64) and the ring itself.
@@ -14,6 +15,7 @@ written count (uint64) and the ring itself.
 
 from __future__ import annotations
 
+import fcntl
 import json
 import mmap
 import os
@@ -33,6 +35,7 @@ RING_NAME = "ring"
 
 _MAGIC = b"RGCRING1"
 _ALIGN = 64
+_LOOK_S = 0.1
 
 
 class SampleRing:
@@ -45,8 +48,15 @@ class SampleRing:
         specs: Sequence[ChannelSpec],
         capacities: Sequence[int],
         offset: int,
+        fd: int,
+        *,
+        writes: bool,
     ) -> None:
         self.path = path
+        self._fd = fd
+        self._writes = writes
+        if writes:
+            fcntl.flock(fd, fcntl.LOCK_SH)
         self.specs = {spec.name: spec for spec in specs}
         self._buffer = buffer
         self._counts: dict[str, NDArray[np.uint64]] = {}
@@ -80,21 +90,25 @@ class SampleRing:
             os.posix_fallocate(fd, 0, size)
             buffer = mmap.mmap(fd, size)
         except OSError as error:
+            os.close(fd)
             raise DeviceError(
                 f"no room for {size / 1e6:.0f} MB of samples: {error.strerror}.",
                 place=str(path),
                 remedy="Free memory in /dev/shm.",
             ) from error
-        finally:
-            os.close(fd)
         buffer[16 : 16 + len(header)] = header
         buffer[8:16] = len(header).to_bytes(8, "little")
+        made = cls(path, buffer, specs, capacities, start, fd, writes=True)
         buffer[0:8] = _MAGIC
-        return cls(path, buffer, specs, capacities, start)
+        return made
 
     @classmethod
-    def attach(cls, path: Path, timeout_s: float = 10.0, *, read_only: bool = False) -> SampleRing:
+    def attach(
+        cls, path: Path, timeout_s: float = 10.0, *, read_only: bool = False, writes: bool = False
+    ) -> SampleRing:
         """Open the ring of another process, waiting for it to appear; read-only for who must not write.
+
+        `writes`: this process writes a channel of it, too.
 
         Raises
         ------
@@ -108,20 +122,18 @@ class SampleRing:
             except FileNotFoundError:
                 fd = -1
             if fd >= 0:
-                try:
-                    if os.pread(fd, 8, 0) == _MAGIC:
-                        access = mmap.ACCESS_READ if read_only else mmap.ACCESS_WRITE
-                        buffer = mmap.mmap(fd, os.fstat(fd).st_size, access=access)
-                        break
-                finally:
-                    os.close(fd)
+                if os.pread(fd, 8, 0) == _MAGIC:
+                    break
+                os.close(fd)
             if time.monotonic() > deadline:
                 raise DeviceError("the data acquisition has not made its sample ring.", place=str(path))
             time.sleep(0.005)
+        access = mmap.ACCESS_READ if read_only else mmap.ACCESS_WRITE
+        buffer = mmap.mmap(fd, os.fstat(fd).st_size, access=access)
         length = int.from_bytes(buffer[8:16], "little")
         header = json.loads(buffer[16 : 16 + length])
         specs = [ChannelSpec(**mapping) for mapping in header["channels"]]
-        return cls(path, buffer, specs, header["capacities"], _padded(16 + length))
+        return cls(path, buffer, specs, header["capacities"], _padded(16 + length), fd, writes=writes)
 
     def written(self, name: str) -> int:
         """Count of samples written to a channel since the start."""
@@ -164,7 +176,8 @@ class SampleRing:
         Raises
         ------
         RecordingError
-            The range is overwritten already (the reader was too slow), or not written within `timeout_s`.
+            The range is overwritten already (the reader was too slow), not written within `timeout_s`, or
+            not written yet and nobody is left who writes.
         """
         data, count = self._data[name], self._counts[name]
         if int(count[0]) < stop:
@@ -201,9 +214,17 @@ class SampleRing:
         return total / n
 
     def _wait(self, name: str, stop: int, timeout_s: float, keep_waiting: Callable[[], bool] | None) -> None:
-        deadline = time.monotonic() + timeout_s
+        begin_s = time.monotonic()
+        deadline = begin_s + timeout_s
+        look_s = begin_s + _LOOK_S
         pause_s = 0.0001  # short at first for who waits for a sample just being written; then cheap
         while int(self._counts[name][0]) < stop:
+            if time.monotonic() > look_s:
+                if self._nobody_writes() and int(self._counts[name][0]) < stop:
+                    raise RecordingError(
+                        f"sample {stop} of {name} will not arrive: its writer has gone.", place=str(self.path)
+                    )
+                look_s = time.monotonic() + _LOOK_S
             if time.monotonic() > deadline or (keep_waiting is not None and not keep_waiting()):
                 raise RecordingError(
                     f"sample {stop} of {name} has not arrived within {timeout_s:g} s.", place=str(self.path)
@@ -211,10 +232,24 @@ class SampleRing:
             time.sleep(pause_s)
             pause_s = min(2.0 * pause_s, 0.001)
 
+    def _nobody_writes(self) -> bool:
+        """Whether no process holds the lock of those who write."""
+        if self._writes:
+            return False
+        try:
+            fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        fcntl.flock(self._fd, fcntl.LOCK_UN)
+        return True
+
     def close(self) -> None:
         """Drop this process's views. The file stays; its maker removes it."""
         self._counts.clear()
         self._data.clear()
+        if self._fd >= 0:
+            os.close(self._fd)
+            self._fd = -1
         try:
             self._buffer.close()
         except BufferError:  # a reader still holds a view; the map goes with the process

@@ -12,6 +12,7 @@ import signal
 import sys
 from pathlib import Path
 
+from rigctl.core.ending import end_process
 from rigctl.core.errors import RigctlError
 from rigctl.core.journal import Journal
 from rigctl.recording.campaign import open_campaign
@@ -66,4 +67,4 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    end_process(main())

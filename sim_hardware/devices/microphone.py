@@ -21,6 +21,7 @@ import numpy as np
 
 from rigctl.config.loading import load_model
 from rigctl.core.channels import MICROPHONE, ChannelSpec
+from rigctl.core.ending import end_process
 from rigctl.core.errors import DeviceError, LinkClosed
 from rigctl.core.ring import RING_NAME, SampleRing
 from rigctl.core.wire import Link, Listener, connect
@@ -64,6 +65,11 @@ class SimulatedMicrophone:
         self._process = subprocess.Popen([*command, *arguments], stdin=subprocess.DEVNULL)
         _use_other_processors(self._process.pid)
         self._link: Link | None = None
+
+    @property
+    def pid(self) -> int:
+        """Its process."""
+        return self._process.pid
 
     def wait_until_ready(self) -> None:
         """Wait until its kernels are compiled.
@@ -144,7 +150,7 @@ def main() -> None:
     link = connect(options.run_dir / SOCKET_NAME, 10.0, "rig server")
     settings, brake = load_model(options.plant, PlantSettings), load_brake(options.brake)
     sound = sound_of(settings, brake, options.seed)
-    ring = SampleRing.attach(options.run_dir / RING_NAME, 10.0)
+    ring = SampleRing.attach(options.run_dir / RING_NAME, 10.0, writes=True)
     motion = SampleRing.attach(options.run_dir / MOTION_NAME, 10.0)
     Plant(settings, brake, seed=0).compile()
     link.send({"m": "ready"})
@@ -166,3 +172,4 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
+    end_process(0)

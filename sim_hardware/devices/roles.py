@@ -154,7 +154,7 @@ class SimulatedAcquisition(_Simulated):
 
 class SimulatedSafetyChannel(_Simulated):
     """Read-back of the simulated safety relay. Setting: ``relay_timeout_s``, how long the relay stays closed
-    without an edge in real time."""
+    without an edge in real time; from 1 s on, in virtual time too (where it is 10 s otherwise)."""
 
     role = "safety"
     known_settings = ("relay_timeout_s",)

@@ -11,6 +11,7 @@ The order of messages is in `docs/explanation/processes.md`.
 from __future__ import annotations
 
 import argparse
+import os
 import json
 import select
 import signal
@@ -19,12 +20,16 @@ import time
 from pathlib import Path
 from typing import Any
 
+from rigctl.core.ending import end_process
 from rigctl.core.errors import DeviceError, LinkClosed, RigctlError
 from rigctl.core.wire import Link, Listener
+from rigctl.hal.priority import BENCH, raise_priority
 from sim_hardware.devices.options import add_plant_arguments
 from sim_hardware.devices.session import SOCKET_NAME
 
-VIRTUAL_RELAY_TIMEOUT_S = 10.0  # wall clock: the watchdog process itself is late only when it is dead
+# Wall clock in virtual time: the watchdog process itself is late only when it is dead. A time-out that is
+# meant for such a process, and not for a relay, holds in virtual time as well.
+VIRTUAL_RELAY_TIMEOUT_S, PROCESS_TIMEOUT_S = 10.0, 1.0
 LEASE_S = 0.25  # real time: set-points older than this are dropped
 FREE_RUN_BLOCK_NS = 50_000_000
 RING_S = 32.0
@@ -45,7 +50,7 @@ class RigServer:
     real_time : bool
         Pace blocks by the wall clock and do not wait for anybody.
     relay_timeout_s : float
-        Real time: the relay opens when no edge has come for so long.
+        The relay opens when no edge has come for so long; in virtual time only from `PROCESS_TIMEOUT_S` on.
     run_dir : Path
         Where the fault laboratory listens.
     """
@@ -67,7 +72,8 @@ class RigServer:
         self._ring = ring
         self._microphone = microphone
         self._real_time = real_time
-        self._relay_timeout_s = relay_timeout_s if real_time else VIRTUAL_RELAY_TIMEOUT_S
+        own = real_time or relay_timeout_s >= PROCESS_TIMEOUT_S
+        self._relay_timeout_s = relay_timeout_s if own else VIRTUAL_RELAY_TIMEOUT_S
         self._commands_type, self._behind_relay = Commands, behind_relay
         self._controller: Link | None = None
         self._safety: Link | None = None
@@ -335,6 +341,8 @@ def main() -> None:
         parties = accept_parties(listener)
         parties["controller"].send({"m": "hello", "channels": [s.to_mapping() for s in channels]})
         server.connect(parties["controller"], parties["safety"])
+        if real_time:  # hardware does not wait for a busy machine
+            raise_priority([os.getpid(), microphone.pid], BENCH)
         listener.close()
         server.run()
     finally:
@@ -343,3 +351,4 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
+    end_process(0)

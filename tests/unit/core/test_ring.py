@@ -55,6 +55,22 @@ def test_reader_waits_no_longer_than_it_says(tmp_path: Path):
         ring.read("pressure", 0, 10, keep_waiting=lambda: False)
 
 
+def test_reader_does_not_wait_when_nobody_is_left_who_writes(tmp_path: Path):
+    writer = SampleRing.create(tmp_path / "ring", SPECS, seconds=1.0)
+    second = SampleRing.attach(tmp_path / "ring", 1.0, writes=True)
+    readers = [SampleRing.attach(tmp_path / "ring", 1.0, read_only=read_only) for read_only in (False, True)]
+    writer.close()
+    for reader in readers:  # the second one could still write
+        with pytest.raises(RecordingError, match="has not arrived"):
+            reader.read("pressure", 0, 10, timeout_s=0.3)
+    second.write("pressure", np.arange(10, dtype=np.float32))
+    second.close()
+    for reader in readers:
+        np.testing.assert_array_equal(reader.read("pressure", 0, 10), np.arange(10))
+        with pytest.raises(RecordingError, match="sample 11 of pressure will not arrive"):
+            reader.read("pressure", 0, 11, timeout_s=60.0)
+
+
 def test_reader_gets_samples_that_come_late(tmp_path: Path):
     ring = SampleRing.create(tmp_path / "ring", SPECS, seconds=1.0)
     late = threading.Timer(0.02, ring.write, ("pressure", np.arange(10, dtype=np.float32)))
