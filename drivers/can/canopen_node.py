@@ -255,7 +255,7 @@ class CanopenNode:
                 f"its data sheet has no object {entry}.", place=self.place, remedy="Correct it."
             )
         try:
-            with self._sdo_lock:
+            with self._sdo_lock, self.network.session.hurried():
                 return transfer(node)
         except canopen.SdoAbortedError as error:
             raise DeviceError(

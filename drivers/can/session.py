@@ -1,6 +1,6 @@
 """One CAN bus, shared by all devices of a process: subscribe to identifiers, send frames, know its health.
 
-Job: one `can.Bus` and one `can.Notifier` for each `[buses.NAME]`; dispatch by identifier with monotonic time
+Job: one `can.Bus` and one reading thread for each `[buses.NAME]`; dispatch by identifier with monotonic time
 stamps; frame statistics; bus-off, a lost interface and failing callbacks are kept, put on the status board
 and raised from the next call. Not its job: CANopen (`drivers.can.canopen_node`).
 
@@ -15,15 +15,17 @@ Use from a device::
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from drivers.can.bus import LOG_SUFFIXES, BusSettings, bus_settings, open_bus
 from drivers.can.frame_log import FrameLog
+from drivers.can.frames import ERROR, EXTENDED, REMOTE, Frame, FrameReader, frame_reader
 from rigctl.core.errors import DeviceError
 from rigctl.hal.devices import RigContext
 
@@ -37,7 +39,7 @@ clock of `time.monotonic()`."""
 _LOG = logging.getLogger(__name__)
 _READ_TIMEOUT_S = 0.1
 _SEND_TIMEOUT_S = 0.05
-_MAX_AGE_S = 1.0  # time stamps of the interface older than this are of another clock
+_REST_S = 0.004  # frames that the kernel has stamped may wait so long: far fewer wake-ups
 _MAX_CONSECUTIVE_ERRORS = 5
 _BUS_OFF = 0x40  # error frames of Linux: linux/can/error.h CAN_ERR_BUSOFF
 _CONTROLLER_PROBLEM = 0x04  # CAN_ERR_CRTL
@@ -60,6 +62,8 @@ class BusStatistics:
         What the interface delivered that is no frame.
     error_frames : int
         Error frames reported by the controller.
+    overrun : int
+        Frames that the kernel dropped since nobody read them in time, where it says so.
     last_received_s : float
         Monotonic time of the newest frame; -inf before the first.
     """
@@ -70,6 +74,7 @@ class BusStatistics:
     echoed: int = 0
     malformed: int = 0
     error_frames: int = 0
+    overrun: int = 0
     last_received_s: float = float("-inf")
 
 
@@ -86,7 +91,11 @@ class CanSession:
         self._failure_lock = threading.Lock()
         self._users = 0
         self._bus: can.BusABC | None = None
-        self._notifier: can.Notifier | None = None
+        self._reader: threading.Thread | None = None
+        self._closing = threading.Event()
+        self._hurry = threading.Event()
+        self._hurry_lock = threading.Lock()
+        self._hurried = 0
         self._log: FrameLog | None = None
         self._failure: DeviceError | None = None
         self._consecutive_errors = 0
@@ -133,15 +142,18 @@ class CanSession:
         self._consecutive_errors = 0
         self._own_sent, self._own_heard = {}, {}
         self._bus = open_bus(self.settings)
-        import can  # not before `open_bus`, which says it when it is missing
-
         wire_log_dir = self._context.wire_log_dir
         log_dir = wire_log_dir or (self._context.log_dir if self.settings.log_suffix else None)
         try:
             if log_dir is not None:
                 suffix = self.settings.log_suffix or LOG_SUFFIXES[0]
                 self._log = FrameLog(log_dir / f"can-{self.name}.{suffix}", self.name)
-            self._notifier = can.Notifier(self._bus, [_Listener(self)], timeout=_READ_TIMEOUT_S)
+            frames = frame_reader(self._bus, self.settings.interface)
+            self._closing.clear()
+            self._reader = threading.Thread(
+                target=self._read, args=(frames,), name=f"can {self.name}", daemon=True
+            )
+            self._reader.start()
         except BaseException:
             self._stop()
             raise
@@ -149,9 +161,12 @@ class CanSession:
     def _stop(self) -> None:
         import can
 
-        if self._notifier is not None:
-            self._notifier.stop(timeout=10 * _READ_TIMEOUT_S)
-            self._notifier = None
+        reader, self._reader = self._reader, None
+        if reader is not None:
+            self._closing.set()
+            self._hurry.set()
+            reader.join(10 * _READ_TIMEOUT_S)
+            self._hurry.clear()
         if self._bus is not None:
             try:
                 self._bus.shutdown()
@@ -233,6 +248,20 @@ class CanSession:
                 self._failure.problem, place=self._failure.place, remedy=self._failure.remedy
             ) from self._failure
 
+    @contextlib.contextmanager
+    def hurried(self) -> Iterator[None]:
+        """While an answer is waited for: frames are dispatched as they come, not some milliseconds later."""
+        with self._hurry_lock:
+            self._hurried += 1
+            self._hurry.set()
+        try:
+            yield
+        finally:
+            with self._hurry_lock:
+                self._hurried -= 1
+                if self._hurried == 0 and not self._closing.is_set():
+                    self._hurry.clear()
+
     def silent_s(self) -> float:
         """Seconds since the newest frame of anybody; infinite before the first."""
         return time.monotonic() - self.statistics.last_received_s
@@ -241,11 +270,11 @@ class CanSession:
         """Look after the controller's own state; called some times a second by whoever has a thread."""
         import can
 
-        bus, notifier = self._bus, self._notifier
+        bus, reader = self._bus, self._reader
         if bus is None or self._failure is not None:
             return
-        if notifier is not None and not any(reader.is_alive() for reader in _threads(notifier)):
-            self.fail(f"its reading thread has ended: {notifier.exception}")
+        if reader is not None and not reader.is_alive():
+            self.fail("its reading thread has ended")
             return
         try:
             state = bus.state
@@ -265,34 +294,45 @@ class CanSession:
                 self._context.board.fault(self._fault_name, problem)
             return self._failure
 
-    # -- the notifier's thread ----------------------------------------------------------------------
+    # -- the reading thread -------------------------------------------------------------------------
 
-    def _on_message(self, message: can.Message) -> None:
-        now_s = time.monotonic()
+    def _read(self, frames: FrameReader) -> None:
+        try:
+            while not self._closing.is_set():
+                try:
+                    taken = frames.take(_READ_TIMEOUT_S, self._on_frame)
+                except Exception as error:  # interfaces raise what they like in place of a frame
+                    self._on_reading_error(error)
+                    continue
+                self.statistics.overrun = frames.overrun
+                if taken and frames.stamped:
+                    self._hurry.wait(_REST_S)
+        finally:
+            frames.close()
+
+    def _on_frame(self, frame: Frame) -> None:
+        cob_id, data, t_ns, flags = frame
         self._consecutive_errors = 0
         statistics = self.statistics
-        cob_id = message.arbitration_id
         heard = self._own_heard.get(cob_id, 0)
         if heard < self._own_sent.get(cob_id, 0):
             self._own_heard[cob_id] = heard + 1
             statistics.echoed += 1
             return
         if self._log is not None:
-            self._log.write(message, sent=False)
-        if message.is_error_frame:
-            self._on_error_frame(message)
+            self._log.write(frame.message(), sent=False)
+        if flags & ERROR:
+            self._on_error_frame(frame)
             return
-        if message.is_remote_frame or message.is_extended_id != (cob_id > 0x7FF):
+        if flags & REMOTE or bool(flags & EXTENDED) != (cob_id > 0x7FF):
             return
-        age_s = time.time() - message.timestamp
-        timestamp_s = now_s - age_s if 0.0 <= age_s < _MAX_AGE_S else now_s
+        timestamp_s = t_ns * 1e-9
         statistics.received += 1
         statistics.last_received_s = timestamp_s
         callbacks = self._subscribers.get(cob_id)
         if callbacks is None:
             statistics.unheard += 1
             return
-        data = bytes(message.data)
         for callback in callbacks:
             try:
                 callback(data, timestamp_s)
@@ -300,12 +340,12 @@ class CanSession:
                 _LOG.exception("bus %s: callback of identifier %03Xh", self.name, cob_id)
                 self.fail(f"a driver failed on a frame {cob_id:03X}h {data.hex(' ')}: {error!r}")
 
-    def _on_error_frame(self, message: can.Message) -> None:
+    def _on_error_frame(self, frame: Frame) -> None:
         self.statistics.error_frames += 1
-        if message.arbitration_id & _BUS_OFF:
+        if frame.cob_id & _BUS_OFF:
             self.fail("the controller is bus-off")
-        elif message.arbitration_id & _CONTROLLER_PROBLEM and len(message.data) > 1:
-            passive = bool(message.data[1] & _PASSIVE)
+        elif frame.cob_id & _CONTROLLER_PROBLEM and len(frame.data) > 1:
+            passive = bool(frame.data[1] & _PASSIVE)
             problem = "the controller is error-passive: many frames are disturbed" if passive else ""
             if self._failure is None:
                 self._context.board.fault(self._fault_name, problem)
@@ -326,26 +366,6 @@ class CanSession:
     @property
     def _fault_name(self) -> str:
         return f"bus {self.name}"
-
-
-class _Listener:
-    """What the Notifier calls."""
-
-    def __init__(self, session: CanSession) -> None:
-        self._session = session
-
-    def __call__(self, message: Any) -> None:
-        self._session._on_message(message)
-
-    def on_error(self, error: Exception) -> None:
-        self._session._on_reading_error(error)
-
-    def stop(self) -> None:
-        """Nothing to flush."""
-
-
-def _threads(notifier: Any) -> list[threading.Thread]:
-    return [reader for reader in notifier._readers if isinstance(reader, threading.Thread)]
 
 
 def can_session(context: RigContext, name: str) -> CanSession:

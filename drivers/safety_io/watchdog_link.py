@@ -23,6 +23,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from drivers.can.bus import bus_settings, open_bus
+from drivers.can.frames import BATCH, ERROR, Frame, FrameReader, frame_reader
 from drivers.safety_io.decoding import SignalDecoder
 from drivers.safety_io.settings import parse_settings
 from rigctl.core.errors import DeviceError, LinkClosed
@@ -105,6 +106,7 @@ class CanSafetyLink:
         self._start_ns = self._end_ns = 0
         self._samples = deque[SafetySample]()
         self._bus: can.BusABC | None = None
+        self._frames: FrameReader | None = None
         self._thread: threading.Thread | None = None
         self._closing = threading.Event()
         self._state_came = threading.Event()
@@ -117,6 +119,7 @@ class CanSafetyLink:
     def connect(self, timeout_s: float) -> None:
         """See `SafetyLink.connect`. The relay is told to open first of all."""
         self._bus = open_bus(self._bus_settings)
+        self._frames = frame_reader(self._bus, self._bus_settings.interface)
         self._reader, self._writer = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
         self._reader.setblocking(False)
         self._writer.setblocking(False)
@@ -148,6 +151,9 @@ class CanSafetyLink:
         if self._thread is not None:
             self._thread.join(1.0)
         bus, self._bus = self._bus, None
+        if self._frames is not None:
+            self._frames.close()
+            self._frames = None
         if self._reader is not None:
             self._reader.close()
             self._reader = None
@@ -233,51 +239,48 @@ class CanSafetyLink:
 
     def _turn(self) -> None:
         """Wait for frames until the next reading is due, then put all that wait in their places."""
-        due_ns = self._end_ns + READING_NS
-        wait_s = max(0.0, (due_ns - time.monotonic_ns()) * 1e-9)
-        for _ in range(_DRAIN_FRAMES):
-            message = self._recv(wait_s)
-            if message is None:
-                break
+        frames = self._frames
+        assert frames is not None
+        wait_s = max(0.0, (self._end_ns + READING_NS - time.monotonic_ns()) * 1e-9)
+        if frames.stamped and wait_s > 0.0:
+            self._closing.wait(wait_s)  # what comes meanwhile is stamped by the kernel
             wait_s = 0.0
-            self._on_message(message)
+        self._take(frames, wait_s)
         now_ns = time.monotonic_ns()
         while self._end_ns + READING_NS <= now_ns:
             self._end_reading()
         if now_ns - self._started_ns > _START_AGAIN_NS:
             self._start_nodes(now_ns)
 
-    def _recv(self, wait_s: float) -> can.Message | None:
+    def _take(self, frames: FrameReader, wait_s: float) -> None:
         import can
 
-        assert self._bus is not None
-        try:
-            message = self._bus.recv(wait_s)
-        except (can.CanError, OSError) as error:
-            self._errors_in_a_row += 1
-            if self._errors_in_a_row >= _ERRORS_IN_A_ROW:
-                raise LinkClosed(f"the bus cannot be read any more: {error}", place=self._place) from error
-            return None
-        if message is not None:
-            self._errors_in_a_row = 0
-        return message
+        for _ in range(BATCH):
+            try:
+                frames.take(wait_s, self._on_frame)
+                return
+            except (can.CanError, OSError) as error:
+                self._errors_in_a_row += 1
+                if self._errors_in_a_row >= _ERRORS_IN_A_ROW:
+                    raise LinkClosed(
+                        f"the bus cannot be read any more: {error}", place=self._place
+                    ) from error
+            wait_s = 0.0  # what waits behind it is not held up
 
-    def _on_message(self, message: can.Message) -> None:
-        if message.is_error_frame:
-            if message.arbitration_id & _BUS_OFF:
+    def _on_frame(self, frame: Frame) -> None:
+        cob_id, data, t_ns, flags = frame
+        self._errors_in_a_row = 0
+        if flags & ERROR:
+            if cob_id & _BUS_OFF:
                 raise LinkClosed("the CAN controller is bus-off", place=self._place)
             return
-        if message.is_extended_id or message.is_remote_frame or message.is_fd:
+        if flags:
             return
-        now_ns = time.monotonic_ns()
-        age_s = time.time() - message.timestamp
-        t_ns = now_ns - round(age_s * 1e9) if 0.0 <= age_s < _MAX_AGE_S else now_ns
         while self._end_ns + READING_NS <= t_ns:
             self._end_reading()
-        cob_id, data = message.arbitration_id, message.data
         if cob_id == self._io.command_cob_id:
             # Some interfaces give own frames back; those are no sign of life of the bus.
-            self._foreign = self._foreign or bytes(data) not in self._own
+            self._foreign = self._foreign or data not in self._own
             return
         if cob_id == _NMT:
             return

@@ -13,6 +13,7 @@ import can
 import pytest
 
 from drivers.can.bus import bus_settings, open_bus
+from drivers.can.frames import ERROR, Frame, frame_of
 from drivers.can.session import CanSession, can_session
 from rigctl.core.errors import ConfigError, DeviceError
 from rigctl.hal.devices import RigContext
@@ -91,7 +92,7 @@ def test_time_stamps_of_another_clock_are_replaced(session: CanSession, stamp_s)
     stamps: list[float] = []
     session.subscribe(0x123, lambda _data, timestamp_s: stamps.append(timestamp_s))
     before_s = time.monotonic()
-    session._on_message(can.Message(arbitration_id=0x123, is_extended_id=False, timestamp=stamp_s))
+    session._on_frame(frame_of(can.Message(arbitration_id=0x123, is_extended_id=False, timestamp=stamp_s)))
     assert before_s <= stamps[0] <= time.monotonic()
 
 
@@ -141,7 +142,7 @@ def test_a_failing_callback_is_a_failure_of_the_bus(session: CanSession, peer, c
 
 
 def test_bus_off_is_told(session: CanSession, context):
-    session._on_message(can.Message(arbitration_id=0x40, is_error_frame=True, data=bytes(8)))
+    session._on_frame(Frame(0x40, bytes(8), time.monotonic_ns(), ERROR))
     with pytest.raises(DeviceError, match="bus-off"):
         session.check()
     assert "bus-off" in context.board.snapshot()["faults"]["bus main"]
@@ -149,7 +150,7 @@ def test_bus_off_is_told(session: CanSession, context):
 
 def test_error_passive_is_shown_and_taken_back(session: CanSession, context):
     for data, shown in ((b"\0\x10", True), (b"\0\0", False)):
-        session._on_message(can.Message(arbitration_id=0x04, is_error_frame=True, data=data + bytes(6)))
+        session._on_frame(Frame(0x04, data + bytes(6), time.monotonic_ns(), ERROR))
         assert ("bus main" in context.board.snapshot().get("faults", {})) is shown
     session.check()
 
@@ -172,8 +173,9 @@ def test_an_interface_that_takes_no_frames_is_told(session: CanSession, monkeypa
 
 
 def test_an_ended_reading_thread_is_told(session: CanSession):
-    assert session._notifier is not None
-    session._notifier.stop()
+    assert session._reader is not None
+    session._closing.set()
+    session._reader.join(2.0)
     session.look()
     with pytest.raises(DeviceError, match="reading thread"):
         session.check()
