@@ -58,7 +58,8 @@ CLOCKS = "clocks"
 """Key of the status board, and so of `Block.status`: source -> offset, drift, jitter, counts."""
 
 RING_S = 16.0
-_POLL_S = 0.002
+_POLL_S = 0.002  # for the end of a block
+_UPDATE_S = 0.02  # meanwhile, for the slow sources: each time costs as much as ten looks at the master
 _START_TIMEOUT_S = 5.0
 _CLOCKS_EVERY_S = 1.0
 
@@ -114,7 +115,7 @@ class LiveAcquisition:
         self._started = False
         self._k = 0
         self._t_ns = 0
-        self._told_s = float("-inf")
+        self._told_s = self._updated_s = float("-inf")
         self.ready_after_s = 0.0
         """From the newest block's end (of its samples, on the host's clock) to its delivery."""
 
@@ -260,7 +261,8 @@ class LiveAcquisition:
                 seen[spec.name] = source.name
 
     def _update(self, now_s: float) -> None:
-        self._time.update(now_s)
+        """Take what the slow sources have delivered."""
+        self._updated_s = now_s
         for collector in self._collectors:
             collector.update(now_s)
             silent_s = collector.silent_s(now_s)
@@ -274,6 +276,7 @@ class LiveAcquisition:
         while True:
             time.sleep(0.01)
             now_s = time.monotonic()
+            self._time.update(now_s)
             self._update(now_s)
             cold = [collector.source.place for collector in self._collectors if not collector.warm]
             if not self._time.warm and self._master is not None:
@@ -289,18 +292,23 @@ class LiveAcquisition:
     def _wait(self, end_ns: int) -> None:
         """Until all samples before `end_ns` are there, or the slow ones are late."""
         end_s = np.array([end_ns * 1e-9])
+        settled_after_s = max((collector.settled_after_s for collector in self._collectors), default=0.0)
         reached_s: float | None = None
         while True:
             now_s = time.monotonic()
-            self._update(now_s)
+            self._time.update(now_s)
             host_s = float(self._time.host_s(end_s)[0])
-            if self._time.reached(end_ns, now_s):
+            reached = self._time.reached(end_ns, now_s)
+            if reached or now_s - self._updated_s >= _UPDATE_S:
+                self._update(now_s)
+            if reached:
                 # counted from when we saw it: after a stall of this process, readers need their turn
                 reached_s = now_s if reached_s is None else reached_s
                 late = now_s > max(host_s, reached_s) + self._settings.lateness_s
                 if late or all(collector.covers(host_s) for collector in self._collectors):
                     return
-            time.sleep(max(_POLL_S, min(host_s + SETTLE_S - now_s, 0.05)))
+            due_s = host_s + (settled_after_s if reached else SETTLE_S)
+            time.sleep(max(_POLL_S, min(due_s - now_s, 0.05)))
 
 
 def _grid_s(rate_hz: float, begin_ns: int, end_ns: int) -> Any:

@@ -120,6 +120,14 @@ class Collector:
         """Time since the newest sample arrived."""
         return now_s - self.last_arrival_s
 
+    @property
+    def settled_after_s(self) -> float:
+        """How long after a host time its value is settled, when nothing is late."""
+        if self.source.interpolation == "hold":
+            return 0.0
+        usual_s = self.source.settings.delay_s + 1.0 / self.source.rate_hz
+        return usual_s if self.fit is None else usual_s + SETTLE_S
+
     def covers(self, host_s: float) -> bool:
         """Whether the value at a host time is settled."""
         if self.source.interpolation == "hold":
