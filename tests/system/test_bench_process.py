@@ -6,14 +6,10 @@ Nothing of the project talks to the wires here: CAN frames are raw, Modbus frame
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import shutil
-import signal
-import socket
 import struct
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -26,59 +22,11 @@ import can
 import numpy as np
 import pytest
 import serial
+from bench_rig import START_TIMEOUT_S, BenchProcess, free_port
 
 from rigctl.core.errors import DeviceError
-from sim_hardware.bench.commands import ask
 
-ROOT = Path(__file__).parents[2]
 GROUP = "239.74.163.2"
-START_TIMEOUT_S = 150.0  # the first start on a machine compiles the physics
-SEED = 5
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
-
-
-class BenchProcess:
-    """A bench in a folder of its own, on a multicast port of its own."""
-
-    def __init__(self, folder: Path, port: int, path: str | None = None) -> None:
-        self.folder, self.port = folder, port
-        text = (ROOT / "configs/benches/a_class.toml").read_text()
-        text = text.replace("port = 43113", f"port = {port}").replace('"../', f'"{ROOT}/configs/')
-        config = folder.parent / f"{folder.name}.toml"
-        config.write_text(text)
-        command = [sys.executable, "-m", "sim_hardware.bench.process", str(config), "--seed", str(SEED)]
-        environment = {**os.environ, **({"PATH": path} if path is not None else {})}
-        self.process = subprocess.Popen(
-            [*command, "--folder", str(folder)],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, cwd=ROOT,
-        )  # fmt: skip
-        self.ready: dict[str, Any] = {}
-
-    def wait_ready(self) -> BenchProcess:
-        watchdog = threading.Timer(START_TIMEOUT_S, self.process.kill)
-        watchdog.start()
-        assert self.process.stdout is not None
-        line = self.process.stdout.readline()
-        watchdog.cancel()
-        assert line, self.end()
-        self.ready = json.loads(line)
-        return self
-
-    def ask(self, to: str, do: str, **fields: Any) -> dict[str, Any]:
-        return ask(self.folder, {"to": to, "do": do, **fields})
-
-    def status(self) -> dict[str, Any]:
-        return self.ask("bench", "status")
-
-    def end(self, number: int = signal.SIGTERM) -> str:
-        """Returns what it has said on stderr."""
-        self.process.send_signal(number)
-        return self.process.communicate(timeout=20)[1]
 
 
 class Host:
