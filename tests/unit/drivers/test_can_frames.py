@@ -1,4 +1,4 @@
-"""`frame_reader`: what datagrams of udp_multicast and messages of python-can become, in batches, with times."""
+"""`frame_reader`: what datagrams of udp_multicast and messages of python-can become, in batches."""
 
 from __future__ import annotations
 
