@@ -41,7 +41,7 @@ class CampaignFile(BaseModel):
     limits_hash8: Annotated[str, Field(pattern="^[0-9a-f]{8}$")]
     versions: dict[str, str]
     sources: dict[str, str]
-    program: Program
+    program: Program | None = None  # None: a manual session
     rig: RigConfig
     calibrations: tuple[Calibration, ...] = ()
 
@@ -56,6 +56,21 @@ class CampaignFile(BaseModel):
         """
         return load_model(campaign / FILE_NAME, cls)
 
+    @property
+    def mode(self) -> str:
+        """ "program" or "manual"."""
+        return "manual" if self.program is None else "program"
+
+    @property
+    def count(self) -> int:
+        """Number of brakings of the program; 0 in a manual session, which ends when a person ends it."""
+        return 0 if self.program is None else self.program.count
+
+    @property
+    def program_name(self) -> str:
+        """Name of the program, or "manual"."""
+        return "manual" if self.program is None else self.program.name
+
     def seed_of_attempt(self, attempt: int) -> int:
         """Seed of the simulated rig for the first run (attempt 0) and each resumed one."""
         return (self.seed + attempt * _SEED_STEP) % 2**31
@@ -69,7 +84,7 @@ class CampaignFile(BaseModel):
             "metadata": {
                 "rig": self.rig.name,
                 "simulated": self.rig.simulated,
-                "program": self.program.name,
+                "program": self.program_name,
                 "seed": self.seed,
                 "versions": self.versions,
                 "calibrations": [calibration.summary() for calibration in self.calibrations],
@@ -89,8 +104,8 @@ class CampaignFile(BaseModel):
 def freeze(
     name: str,
     *,
-    program: Program,
-    program_path: Path,
+    program: Program | None,
+    program_path: Path | None,
     rig: RigConfig,
     rig_path: Path,
     time: str,
@@ -120,7 +135,7 @@ def freeze(
         seed=seed,
         limits_hash8=limits_hash8,
         versions=_versions(),
-        sources={"program": str(program_path), "rig": str(rig_path)},
+        sources={"rig": str(rig_path), **({} if program_path is None else {"program": str(program_path)})},
         program=program,
         rig=RigConfig.model_validate(mapping),
         calibrations=calibrations,

@@ -83,6 +83,34 @@ def run(
 
 
 @app.command()
+def manual(
+    rig: RigOption = DEFAULT_RIG,
+    out: Annotated[Path, typer.Option("--out", help="Folder for campaigns.")] = Path("data"),
+    name: Annotated[
+        str | None, typer.Option("--name", help="Name of the campaign. [default: manual and time]")
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the simulated rig. [default: random]"),
+    ] = None,
+    time: Annotated[
+        Time | None,
+        typer.Option("--time", help="real: by the clock; virtual: as fast as possible. [default: real]"),
+    ] = None,
+    report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
+) -> None:
+    """Hold a rig for manual brakings: `rigctl gui` and `rigctl control` command it. Ctrl-C ends safely.
+
+    Nothing moves before somebody enables it.
+    """
+    from rigctl.app.running import RunOptions
+    from rigctl.app.running import run as run_session
+
+    options = RunOptions(None, rig, out, name, seed, time.value if time else None, report)
+    raise typer.Exit(run_session(options, _console()))
+
+
+@app.command()
 def resume(
     campaign: Annotated[Path, typer.Argument(help="Campaign folder of a run that did not come to its end.")],
     acknowledge: Annotated[
@@ -144,13 +172,15 @@ def stability(
 
 
 def _add_families() -> None:
-    from rigctl.app import bench, calibrations, devices, laboratory
+    from rigctl.app import annotating, bench, calibrations, control, devices, laboratory
     from rigctl.app.model import model_app
 
     app.add_typer(model_app(), name="model")
     devices.register(app)
     bench.register(app)
+    annotating.register(app)
     calibrations.register(app)
+    control.register(app)
     laboratory.register(app)
 
 

@@ -13,6 +13,7 @@ import os
 import signal
 import sys
 from pathlib import Path
+from typing import Any
 
 from rigctl.app.campaign_file import CampaignFile
 from rigctl.app.compose import build_rig
@@ -22,9 +23,12 @@ from rigctl.core.journal import Journal
 from rigctl.core.wire import connect
 from rigctl.engine.engine import Engine
 from rigctl.engine.guard import Guard
+from rigctl.engine.manual import ManualEngine
 from rigctl.engine.state import Outcome, RunResult, Verb
 from rigctl.hal.devices import RigContext
 from rigctl.hal.priority import CONTROLLER, raise_priority
+from rigctl.hal.rig import Rig
+from rigctl.recording.campaign import open_campaign
 from rigctl.recording.client import RecorderClient
 
 CONNECT_TIMEOUT_S = 60.0
@@ -79,18 +83,7 @@ class Controller:
         with rig:
             guard = self._connect_guard()
             self._journal.write("rig_opened", devices=rig.identities(), attempt=self._attempt)
-            engine = Engine(
-                rig,
-                guard,
-                recorder,
-                self._journal,
-                (braking for braking in file.program.brakings() if braking.index not in self._done),
-                total=file.program.count,
-                done=len(self._done),
-                verbs=self._next_verb,
-                report=self._control.tell,
-                acknowledgement=(getpass.getuser(), self._reason) if self._reason else None,
-            )
+            engine = self._engine(rig, guard, recorder)
             gc.collect()
             gc.freeze()
             if file.time == "real":
@@ -100,6 +93,26 @@ class Controller:
             recorder.close()
             guard.close()
         return result
+
+    def _engine(self, rig: Rig, guard: Guard, recorder: RecorderClient) -> Engine:
+        program, done = self._file.program, self._done
+        shared: dict[str, Any] = {
+            "done": len(done),
+            "verbs": self._next_verb,
+            "report": self._control.tell,
+            "acknowledgement": (getpass.getuser(), self._reason) if self._reason else None,
+            "asks": self._control.take_asks,
+            "watch": self._control.watch,
+        }
+        if program is None:
+            files = open_campaign(self._campaign).braking_files()
+            first_index = max((int(path.stem) for path in files), default=0) + 1
+            return ManualEngine(
+                rig, guard, recorder, self._journal, (), total=len(done), first_index=first_index,
+                attended=lambda: self._control.attended, **shared,
+            )  # fmt: skip
+        brakings = (braking for braking in program.brakings() if braking.index not in done)
+        return Engine(rig, guard, recorder, self._journal, brakings, total=program.count, **shared)
 
     def _connect_guard(self) -> Guard:
         """The watchdog listens once it has its own connection to the rig."""
@@ -113,7 +126,7 @@ class Controller:
         if (self._terminated or self._control.deserted) and not self._stop_sent:
             # Nobody is left who could stop an unattended program: end it in an orderly way.
             self._stop_sent = True
-            return Verb.STOP
+            return Verb.END
         return verb
 
     def _on_terminate(self, number: int, frame: object) -> None:

@@ -25,9 +25,9 @@ PLAIN_LINE_EVERY_S = 5.0
 class ProgressView:
     """Shows the progress of a run; use it as a context manager."""
 
-    def __init__(self, console: Console, program: Program, capabilities: RigCapabilities) -> None:
+    def __init__(self, console: Console, program: Program | None, capabilities: RigCapabilities) -> None:
         self._console = console
-        self._cumulated_s = _cumulated(program, capabilities)
+        self._cumulated_s = [0.0] if program is None else _cumulated(program, capabilities)
         self._started = time.monotonic()
         self._first: tuple[float, float] | None = None
         self._line_at = 0.0
@@ -40,7 +40,8 @@ class ProgressView:
             refresh_per_second=8,
             disable=not console.is_terminal,
         )
-        self._task = self._bar.add_task("", total=program.count, state="starting", text="")
+        total = None if program is None else program.count
+        self._task = self._bar.add_task("", total=total, state="starting", text="")
 
     def __enter__(self) -> ProgressView:
         self._bar.start()
@@ -86,6 +87,8 @@ class ProgressView:
 
     def _pace(self, progress: Progress) -> tuple[float | None, float | None]:
         """Rig seconds per wall second, and wall seconds left by the estimate of the dry run."""
+        if progress.mode == "manual":
+            return None, None
         done_s = self._cumulated_s[max(progress.braking - 1, 0)]
         now = time.monotonic()
         if self._first is None:

@@ -37,7 +37,7 @@ def make_report(
             prediction = Prediction(found.onset_pressure_bar, found.onset_frequency_hz, found.brake)
     info = {
         "Campaign": file.name,
-        "Program": file.program.name,
+        "Program": file.program_name,
         "Rig": file.rig.name + (" (simulated)" if file.rig.simulated else ""),
         "Seed": str(file.seed),
         "Versions": ", ".join(f"{name} {number}" for name, number in file.versions.items()),

@@ -1,4 +1,4 @@
-"""`rigctl run` and `rigctl resume`: check, freeze, supervise, report, tell.
+"""`rigctl run`, `rigctl manual` and `rigctl resume`: check, freeze, supervise, report, tell.
 
 Job: the course of one campaign from files to exit code. Not its job: option parsing (`rigctl.app.cli`),
 processes (`rigctl.app.supervisor`).
@@ -52,9 +52,9 @@ PROCESS_CAUSES = frozenset(
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What a person has chosen on the command line. `time`: None for what suits the rig."""
+    """What a person has chosen. `program`: None for a manual session; `time`: None for what suits the rig."""
 
-    program: Path
+    program: Path | None
     rig: Path
     out: Path
     name: str | None
@@ -64,14 +64,14 @@ class RunOptions:
 
 
 def run(options: RunOptions, console: Console) -> int:
-    """Run a program from its start in a new campaign; returns the exit code.
+    """Run a program from its start, or a manual session, in a new campaign; returns the exit code.
 
     Raises
     ------
     ConfigError
         Something is wrong with a file or option; nothing was started.
     """
-    program = read_program(options.program)
+    program = None if options.program is None else read_program(options.program)
     rig = read_rig(options.rig)
     time_mode = _time_of(rig, options)
     resolved_paths(rig, options.rig)
@@ -80,11 +80,18 @@ def run(options: RunOptions, console: Console) -> int:
         prediction_of((options.rig.resolve().parent / rig.prediction.brake).resolve())
     context = RigContext(Path(), time_mode, options.seed, str(options.rig), options.rig.resolve().parent)
     build_rig(rig, context)
-    result = dry_run(program, rig)
-    if not result.ok:
-        raise ConfigError(problems_text(result, str(options.program)))
-    default = f"{program.name.replace(' ', '_')}-{datetime.now():%Y%m%d-%H%M%S}"
-    name = default if options.name is None else options.name
+    needed_bytes, news = DISK_RESERVE_BYTES, f"Manual session on {rig.name}"
+    if program is not None:
+        result = dry_run(program, rig)
+        if not result.ok:
+            raise ConfigError(problems_text(result, str(options.program)))
+        needed_bytes += 2 * result.data_bytes
+        news = (
+            f"{program.count} brakings ({_parts(program)}) on {rig.name}, "
+            f"about {duration_text(result.estimated_duration_s)} of rig time"
+        )
+    title = "manual" if program is None else program.name.replace(" ", "_")
+    name = f"{title}-{datetime.now():%Y%m%d-%H%M%S}" if options.name is None else options.name
     if not _NAME.fullmatch(name):
         raise ConfigError(
             f"{name!r} cannot be the name of a campaign.",
@@ -92,7 +99,7 @@ def run(options: RunOptions, console: Console) -> int:
             value=name,
             remedy="Use up to 100 letters, digits, '.', '_' and '-', beginning with a letter or digit.",
         )
-    require_free_space(options.out, DISK_RESERVE_BYTES + 2 * result.data_bytes)
+    require_free_space(options.out, needed_bytes)
     file, copies = campaign_file.freeze(
         name,
         program=program,
@@ -109,12 +116,7 @@ def run(options: RunOptions, console: Console) -> int:
         for target, source in copies.items():
             (campaign.folder / target).parent.mkdir(exist_ok=True)
             shutil.copyfile(source, campaign.folder / target)
-        console.print(
-            f"{program.count} brakings ({_parts(program)}) on {rig.name}, "
-            f"about {duration_text(result.estimated_duration_s)} "
-            f"of rig time; seed {file.seed}",
-            highlight=False,
-        )
+        console.print(f"{news}; seed {file.seed}", highlight=False)
         console.print(f"Campaign {campaign.folder}", highlight=False)
         return _carry_out(
             campaign, file, attempt=0, done=[], acknowledgement="", report=options.report, console=console
@@ -122,9 +124,9 @@ def run(options: RunOptions, console: Console) -> int:
 
 
 def _time_of(rig: RigConfig, options: RunOptions) -> str:
-    """How time runs: by the clock on a real rig, as fast as possible on a simulated one by default."""
+    """How time runs: by the clock on a real rig and by hand, else as fast as possible by default."""
     if rig.simulated:
-        return options.time or "virtual"
+        return options.time or ("real" if options.program is None else "virtual")
     if options.time == "virtual":
         raise ConfigError(
             "a rig of real devices runs by the clock.",
@@ -150,13 +152,14 @@ def resume(folder: Path, acknowledgement: str, report: bool, console: Console) -
     with campaign.lock("run"):
         _recover(campaign, console)
         done = campaign.completed_indices()
-        left = file.program.count - len(done)
-        if left == 0:
-            console.print(f"All {file.program.count} brakings are complete already.", highlight=False)
-            if report:
-                make_report(folder, console)
-            return exit_codes.OK
-        console.print(f"{len(done)} brakings are complete, {left} are left.", highlight=False)
+        if file.program is not None:
+            left = file.count - len(done)
+            if left == 0:
+                console.print(f"All {file.count} brakings are complete already.", highlight=False)
+                if report:
+                    make_report(folder, console)
+                return exit_codes.OK
+            console.print(f"{len(done)} brakings are complete, {left} are left.", highlight=False)
         attempt = sum(1 for record in read_journal(campaign.journal_path) if record.kind == "run_started")
         acknowledgement = _acknowledgement(campaign, acknowledgement)
         return _carry_out(
@@ -225,7 +228,7 @@ def _carry_out(
     if any(campaign.spools.iterdir()):
         _recover(campaign, console)
     _tell(result, file.program, wall_s, console)
-    if report:
+    if report and (file.program is not None or result.done):
         warm_up.join()  # the report is drawn by two processes, which wants a process without threads
         make_report(campaign.folder, console, wall_s=wall_s, rig_s=result.rig_s)
     return _end(result, campaign.folder, console)
@@ -241,8 +244,12 @@ def _parts(program: Program) -> str:
     return " + ".join(f"{sequence.count} {sequence.name}" for sequence in program.sequences if sequence.count)
 
 
-def _tell(result: RunResult, program: Program, wall_s: float, console: Console) -> None:
+def _tell(result: RunResult, program: Program | None, wall_s: float, console: Console) -> None:
     factor = result.rig_s / wall_s if wall_s > 0 else 0.0
+    if program is None:
+        words = f"{result.done} brakings by hand in {duration_text(wall_s)}"
+        console.print(words, highlight=False)
+        return
     parts = f" ({_parts(program)})" if result.done == result.total else ""
     console.print(
         f"{result.done} of {result.total} brakings complete{parts}; "

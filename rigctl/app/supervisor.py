@@ -7,11 +7,7 @@ watchdog is given time to reach the safe state, and the run ends with what is kn
 
 from __future__ import annotations
 
-import fcntl
-import os
-import shutil
 import signal
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -20,7 +16,7 @@ from types import FrameType
 
 from rigctl.app.campaign_file import CampaignFile
 from rigctl.app.compose import build_rig
-from rigctl.app.control_socket import ControlClient
+from rigctl.app.control_socket import SUPERVISOR, ControlClient
 from rigctl.app.processes import (
     Child,
     share_processors,
@@ -28,12 +24,12 @@ from rigctl.app.processes import (
     start_recorder,
     start_watchdog,
 )
+from rigctl.app.sessions import announce, run_folder
 from rigctl.core.errors import DeviceError, LinkClosed
 from rigctl.core.journal import Journal, read_journal
 from rigctl.engine.state import Outcome, Progress, RunResult, Verb
 from rigctl.hal.devices import RigContext
 
-RUN_DIR_PREFIX = "rigctl-"
 START_TIMEOUT_S = 60.0
 SILENCE_S = 8.0  # wall clock without news of the controller before we look at what the watchdog says
 SAFE_STATE_S = 30.0  # for watchdog and rig to come to the safe state after the controller has died
@@ -79,13 +75,13 @@ class Supervisor:
         self._say = say
         self._stop_asked = 0
         self._stop_sent = False
-        self._progress = Progress(total=file.program.count, done=len(done))
+        self._progress = Progress(total=file.count, done=len(done), mode=file.mode)
 
     def run(self) -> RunResult:
         """Start everything, wait for the end, leave nothing running."""
         journal = Journal(self._campaign / "journal.jsonl", "supervisor")
         (self._campaign / "logs").mkdir(exist_ok=True)
-        with _run_dir() as run_dir, self._signals():
+        with run_folder() as run_dir, self._signals():
             children: list[Child] = []
             try:
                 result = self._run(run_dir, children, journal)
@@ -115,6 +111,7 @@ class Supervisor:
             pids={child.name: child.pid for child in children},
         )
         client = self._connect(run_dir, controller)
+        announce(run_dir, self._campaign)
         try:
             result = self._follow(client, controller)
         finally:
@@ -128,7 +125,7 @@ class Supervisor:
         deadline = time.monotonic() + START_TIMEOUT_S
         while True:
             try:
-                return ControlClient(run_dir, timeout_s=0.2)
+                return ControlClient(run_dir, 0.2, who="rigctl", role=SUPERVISOR)
             except DeviceError:
                 if controller.returncode is not None or time.monotonic() > deadline:
                     raise DeviceError(
@@ -143,7 +140,7 @@ class Supervisor:
         while True:
             if self._stop_asked and not self._stop_sent:
                 self._stop_sent = True
-                client.send(Verb.STOP)
+                client.send(Verb.END)
                 self._say("Stopping safely: releasing pressure, stopping the disc …")
             try:
                 news = client.recv(0.25)
@@ -153,9 +150,10 @@ class Supervisor:
                 return news
             if news is not None:
                 last_news = time.monotonic()
+            if isinstance(news, Progress):
                 self._progress = news
                 self._show(news)
-            elif time.monotonic() - last_news > SILENCE_S and self._watchdog_tripped():
+            elif news is None and time.monotonic() - last_news > SILENCE_S and self._watchdog_tripped():
                 self._say("The controller does not answer; the watchdog has tripped.")
                 self._wait_for_safe_state()
                 controller.kill()
@@ -218,49 +216,3 @@ class Supervisor:
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
-
-
-@contextmanager
-def _run_dir() -> Iterator[Path]:
-    """Private folder for sockets and the sample ring, in memory where there is /dev/shm.
-
-    It is locked as long as this process lives; folders that a killed supervisor has left are removed.
-    """
-    shm = Path("/dev/shm")
-    base = shm if shm.is_dir() and _writable(shm) else Path(tempfile.gettempdir())
-    for left in base.glob(f"{RUN_DIR_PREFIX}*"):
-        if (fd := _lock(left)) is not None:
-            shutil.rmtree(left, ignore_errors=True)
-            os.close(fd)
-    path = Path(tempfile.mkdtemp(prefix=RUN_DIR_PREFIX, dir=base))
-    fd = _lock(path)
-    try:
-        yield path
-    finally:
-        shutil.rmtree(path, ignore_errors=True)
-        if fd is not None:
-            os.close(fd)
-
-
-def _lock(folder: Path) -> int | None:
-    """Descriptor that holds the lock of a folder; None when somebody else has it, or it is not ours."""
-    try:
-        fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
-    except OSError:
-        return None
-    try:
-        if os.fstat(fd).st_uid != os.getuid():
-            raise BlockingIOError
-        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        os.close(fd)
-        return None
-    return fd
-
-
-def _writable(folder: Path) -> bool:
-    try:
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False

@@ -46,11 +46,13 @@ class Air:
         self._ventilator = rig.ventilator
         self._settle_s = rig.config.capabilities.ventilator_settle_s
         self._blowing = False
+        self.flow_m3_h = 0.0
         self._off_s = -math.inf
 
     def blow(self, flow_m3_h: float) -> None:
         """Set the air flow."""
         self._blowing = flow_m3_h > 0.0
+        self.flow_m3_h = flow_m3_h
         self._ventilator.set_flow(flow_m3_h)
 
     def stop(self, block: Block) -> None:

@@ -8,6 +8,7 @@ made (`rigctl.engine.procedures`), limits (watchdog), files (recorder).
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Sequence
@@ -17,6 +18,8 @@ from rigctl.core.blocks import Block
 from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED, TORQUE
 from rigctl.core.errors import RigctlError, RunError, SafetyTrip
 from rigctl.core.journal import Journal
+from rigctl.core.units import PA_PER_BAR
+from rigctl.engine.commands import AcknowledgeAlarm, Ask, Note, Rate
 from rigctl.engine.guard import Checkpoint, Guard
 from rigctl.engine.procedures import Procedures, Recorder, Script, at_rest
 from rigctl.engine.state import BreakOff, Outcome, Progress, RunResult, State, Verb
@@ -29,6 +32,7 @@ MAX_FAILURES_IN_A_ROW = 3
 SAFE_STATE_TIMEOUT_S = 60.0
 PAUSE_SLEEP_S = 0.02
 REPORT_EVERY_S = 0.1  # wall clock
+LEAST_NET_BAR = 0.5  # below it torque over pressure is noise
 ALL_CHECKPOINTS = (
     Checkpoint.BLOCK_RECEIVED
     | Checkpoint.ENGINE_STEPPED
@@ -70,7 +74,13 @@ class Engine:
         Called with the progress, at most every `REPORT_EVERY_S`.
     acknowledgement : (who, reason), optional
         A person's acknowledgement of the trip that ended an earlier run.
+    asks : callable
+        Asked once per block: what people have asked for since, beyond verbs.
+    watch : callable
+        Called with every block, for people who look at the signals.
     """
+
+    mode = "program"
 
     def __init__(
         self,
@@ -85,6 +95,8 @@ class Engine:
         verbs: Callable[[], Verb | None],
         report: Callable[[Progress], None],
         acknowledgement: tuple[str, str] | None = None,
+        asks: Callable[[], Sequence[Ask]] = tuple,
+        watch: Callable[[Block], None] | None = None,
     ) -> None:
         self._rig = rig
         self._guard = guard
@@ -94,7 +106,9 @@ class Engine:
         self._verbs = verbs
         self._report = report
         self._acknowledgement = acknowledgement
-        self.progress = Progress(total=total, done=done)
+        self._asks = asks
+        self._watch = watch
+        self.progress = Progress(total=total, done=done, mode=self.mode)
         self._procedures = Procedures(rig, recorder, self.progress)
         self._breakable = False  # a braking is under way that a verb may break off
         self._hold = False
@@ -112,7 +126,7 @@ class Engine:
     def run(self) -> RunResult:
         """Carry out the brakings and return how it ended; the rig is at rest or in the safe state then."""
         try:
-            self._drive(self._script())
+            self._carry_out()
             self._recorder.wait_idle()
             self._listen_to_recorder()
             outcome, cause, remedy = Outcome.FINISHED, "", ""
@@ -122,7 +136,9 @@ class Engine:
             self._enter(State.FAULTED, trip.problem)
             self._break_recording(f"safety trip: {trip.problem}")
             self._wait_for_rest()
-            outcome, cause, remedy = Outcome.TRIPPED, trip.problem, trip.remedy
+            # The relay may have been seen open before the watchdog said why: its words are the first cause.
+            words, advice = self._guard.cause, self._guard.remedy
+            outcome, cause, remedy = Outcome.TRIPPED, words or trip.problem, advice or trip.remedy
         except RigctlError as error:
             self._enter(State.FAULTED, str(error))
             self._break_recording(str(error))
@@ -148,6 +164,9 @@ class Engine:
 
     # -- the loop -------------------------------------------------------------------------------
 
+    def _carry_out(self) -> None:
+        self._drive(self._script())
+
     def _drive(self, script: Script) -> None:
         """One turn per block: status of the watchdog, verbs, script, recorder, heartbeat."""
         next(script)
@@ -165,6 +184,8 @@ class Engine:
             self._guard.heartbeat(block.k, self._commanded())
             self._owed_k = None
             self._tell(block)
+            if self._watch is not None:
+                self._watch(block)
             if not running:
                 return
 
@@ -185,6 +206,8 @@ class Engine:
             self._owed_k = None
 
     def _turn(self, script: Script, block: Block) -> bool:
+        for ask in self._asks():
+            self._answer(ask)
         verb = self._verbs()
         try:
             if verb is not None and self._obey(verb):
@@ -195,11 +218,34 @@ class Engine:
             return False
         return True
 
+    def _answer(self, ask: Ask) -> None:
+        """What people may ask during any run: notes. Everything else belongs to a manual session."""
+        command = ask.command
+        if isinstance(command, Note | Rate):
+            self._note(command, ask.who)
+            ask.done()
+        elif isinstance(command, AcknowledgeAlarm):
+            self._journal.write("alarm_acknowledged", rig_s=self._rig_s, alarm=command.alarm, who=ask.who)
+            ask.done()
+        else:
+            ask.refuse("a program is running.", "Set-points by hand belong to a manual session.")
+
+    def _note(self, command: Note | Rate, who: str) -> None:
+        """Journal it; while a braking is recorded it is stored in its file, too."""
+        braking = self.progress.braking
+        kind = "operator_note" if isinstance(command, Note) else "operator_rating"
+        values: dict[str, Any] = (
+            {"text": command.text} if isinstance(command, Note) else {"rating": command.rating}
+        )
+        self._journal.write(kind, rig_s=self._rig_s, index=braking, who=who, **values)
+        if self._procedures.recording:
+            self._recorder.mark(kind, self._rig_s, **values)
+
     def _obey(self, verb: Verb) -> bool:
         """True when the verb breaks off what is running now."""
         self._journal.write("verb", rig_s=self._rig_s, verb=verb.value, braking=self.progress.braking)
         paused = self.progress.state is State.PAUSED
-        if verb is Verb.STOP:
+        if verb in (Verb.STOP, Verb.END):
             self._stop = True
             return self._breakable or paused
         if verb is Verb.HOLD:
@@ -254,7 +300,25 @@ class Engine:
         progress.pressure_bar = block.mean(PRESSURE)
         progress.torque_nm = block.mean(TORQUE)
         progress.temperature_degc = block.mean(DISC_TEMPERATURE)
+        progress.set_speed_rpm = self._rig.drive.commanded_rpm
+        progress.set_pressure_bar = self._rig.pressure.commanded_bar
+        progress.ventilator_m3_h = self._procedures.ventilator_m3_h
+        progress.enabled = self._rig.drive.enabled
+        progress.relay = bool(block.status.get("relay", self._armed))
+        progress.recording = self._procedures.recording
+        progress.recording_left_s = max(self._procedures.recording_end_s - block.end_s, 0.0)
+        progress.mu = self._mu(progress.torque_nm, progress.pressure_bar)
         self._report(progress)
+
+    def _mu(self, torque_nm: float, pressure_bar: float) -> float:
+        """Momentary coefficient of friction mu = M / (2 (p - p0) A r); NaN without pressure."""
+        geometry = self._rig.config.friction
+        net_bar = pressure_bar - geometry.p0_bar
+        if net_bar < LEAST_NET_BAR:
+            return math.nan
+        return torque_nm / (
+            2.0 * net_bar * PA_PER_BAR * geometry.piston_area_m2 * geometry.effective_radius_m
+        )
 
     # -- the program ----------------------------------------------------------------------------
 
@@ -321,7 +385,7 @@ class Engine:
         """Release; True when the braking is to be tried again."""
         self._break_recording(broken.reason)
         yield from self._procedures.release()
-        if broken.verb is Verb.STOP:
+        if broken.verb in (Verb.STOP, Verb.END):
             raise broken
         if broken.verb is Verb.PAUSE:
             yield from self._pause(broken.reason)
@@ -419,6 +483,7 @@ class Engine:
             for block in self._rig.blocks():
                 self._rig_s = block.end_s
                 self._guard.passed(ALL_CHECKPOINTS)
+                self._guard.listen(block.k)
                 with contextlib.suppress(SafetyTrip):  # it may be the watchdog itself that has gone
                     self._guard.heartbeat(block.k, self._commanded())
                 self._tell(block)

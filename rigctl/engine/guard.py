@@ -66,6 +66,8 @@ class Guard:
         self.state = "locked"
         self.cause: str | None = None
         self.remedy: str | None = None
+        self.reset_refused: tuple[int, str, str] = (0, "", "")
+        """How many resets the watchdog has refused, the words and the remedy of the last."""
 
     def hello(self, *, run_id: str, pid: int, campaign: str) -> None:
         """Say who is driving."""
@@ -96,6 +98,21 @@ class Guard:
             The watchdog has tripped (names the first cause and the remedy), its process has gone, or, armed
             in real time, it has been silent for `SILENCE_S`.
         """
+        heard = self._read(k)
+        if self.state == "tripped":
+            raise SafetyTrip(self.cause or "tripped", place="watchdog", remedy=self.remedy or "")
+        if not self._lockstep:
+            self._watch_silence(heard=heard)
+
+    def listen(self, k: int) -> bool:
+        """As `update` in the safe state: take the watchdog's words; False when it has gone."""
+        try:
+            self._read(k)
+        except SafetyTrip:
+            return False
+        return True
+
+    def _read(self, k: int) -> bool:
         try:
             messages = self._newer + self._link.drain()
         except LinkClosed as error:
@@ -105,10 +122,7 @@ class Guard:
         for message in messages:
             if not self._lockstep or message.get("k", -1) < k:
                 self._take(message)
-        if self.state == "tripped":
-            raise SafetyTrip(self.cause or "tripped", place="watchdog", remedy=self.remedy or "")
-        if not self._lockstep:
-            self._watch_silence(heard=bool(messages))
+        return bool(messages)
 
     def _watch_silence(self, *, heard: bool) -> None:
         now_s = self._clock_s()
@@ -128,6 +142,8 @@ class Guard:
             self._nonce = int(message["nonce"])
             self.cause = message.get("cause")
             self.remedy = message.get("remedy")
+            count, words, remedy = message.get("reset_refused") or (0, "", "")
+            self.reset_refused = (int(count), str(words), str(remedy))
 
     def heartbeat(self, k: int, setpoints: dict[str, Any]) -> None:
         """Tell the watchdog that the loop has worked on block `k`; the checkpoints start afresh."""

@@ -112,6 +112,19 @@ class Procedures:
         self._air = Air(rig)
         self._conditioner = Conditioner(rig, self._air, progress)
         self.recording = False
+        self.recording_end_s = 0.0
+
+    @property
+    def ventilator_m3_h(self) -> float:
+        """Air flow in force."""
+        return self._air.flow_m3_h
+
+    def blow(self, flow_m3_h: float, block: Block) -> None:
+        """Air by hand; 0 is off."""
+        if flow_m3_h > 0.0:
+            self._air.blow(flow_m3_h)
+        else:
+            self._air.stop(block)
 
     def end_recording(self, status: str, note: str = "") -> None:
         """The present braking is over for the recorder."""
@@ -150,7 +163,7 @@ class Procedures:
                     place="spin up", remedy="Look at the drive's ramp settings and its current limit.",
                 )  # fmt: skip
 
-    def brake(self, braking: Braking) -> Script:
+    def brake(self, braking: Braking, note: str = "") -> Script:
         """Record: background before, the braking with its profiles, and the release after it.
 
         Raises
@@ -165,6 +178,9 @@ class Procedures:
         block = yield
         recorder.begin(braking.model_dump(mode="json"), t0_s=block.t_s)
         self.recording = True
+        self.recording_end_s = (
+            block.t_s + braking.recording.pre_s + braking.duration_s + braking.recording.post_s
+        )
         recorder.block(block)
         block = yield from self._record(rest_s, block)
         recorder.mark("pressure_onset", block.end_s, temperature_degc=block.mean(DISC_TEMPERATURE))
@@ -181,7 +197,7 @@ class Procedures:
         recorder.mark("pressure_release", block.end_s)
         rig.pressure.set_pressure(0.0)
         yield from self._record(spans(braking.recording.post_s, rig.steady_block_s), block)
-        self.end_recording("complete")
+        self.end_recording("complete", note)
 
     def _record(self, lengths_s: Sequence[float], block: Block) -> Generator[None, Block, Block]:
         """Record blocks of these lengths without changing set-points; returns the last one."""

@@ -23,7 +23,9 @@ class Verb(StrEnum):
     ``HOLD``: finish the present braking, then wait. ``RESUME``: go on.
     ``SKIP``: break off the present braking and go on with the next.
     ``REPEAT``: break off the present braking and start it again.
-    ``STOP``: break off the present braking, release, end the run; `rigctl resume` continues later.
+    ``STOP``: break off the present braking, release, end the run; `rigctl resume` continues later. A manual
+    session runs down and locks, and can be enabled again.
+    ``END``: as ``STOP``, and a manual session ends, too.
     """
 
     PAUSE = "pause"
@@ -32,6 +34,7 @@ class Verb(StrEnum):
     SKIP = "skip"
     REPEAT = "repeat"
     STOP = "stop"
+    END = "end"
 
 
 class BreakOff(Exception):
@@ -69,7 +72,17 @@ class Progress:
     torque_nm: float = 0.0
     temperature_degc: float = 0.0
     safety: str = "locked"
-    note: str = ""
+    mode: str = "program"
+    set_speed_rpm: float = 0.0
+    set_pressure_bar: float = 0.0
+    ventilator_m3_h: float = 0.0
+    mu: float = float("nan")
+    relay: bool = False
+    enabled: bool = False
+    recording: bool = False
+    recording_left_s: float = 0.0
+    cause: str = ""
+    remedy: str = ""
 
 
 @dataclass

@@ -1,9 +1,9 @@
 """Colours, sizes and fonts of the window: one set of tokens, light and dark.
 
 Job: the tokens, the style sheet made of them, pyqtgraph's colours, and the news that they have changed. Grey
-while all is well; blue for set-points and selection, amber for a warning, red for an alarm or trip, green only
-for "none measured, test passed". Contrast of text is at least 4.5 : 1 (WCAG 2.1, 1.4.3; tested). Not its job:
-layout.
+while all is well; blue for set-points and selection, amber for a warning, red for an alarm or trip, green
+only for "none measured, test passed". Contrast of text is at least 4.5 : 1 (WCAG 2.1, 1.4.3; tested). Not
+its job: layout.
 """
 
 from __future__ import annotations
@@ -164,7 +164,8 @@ def style_sheet(t: Theme, scale: float) -> str:
     QPushButton[look="primary"] {{ background: {t.blue}; color: {t.on_blue}; font-weight: bold; }}
     QPushButton[look="primary"]:disabled {{ background: {t.panel}; color: {t.plot_line}; }}
     QPushButton[look="stop"] {{ background: {t.red}; color: {t.on_red}; font-weight: bold;
-        font-size: {round(14 * scale)}pt; min-width: {18 * u}px; min-height: {5 * u}px; border: 2px solid {t.text}; }}
+        font-size: {round(14 * scale)}pt; min-width: {18 * u}px; min-height: {5 * u}px; border: 2px solid
+        {t.text}; }}
     QPushButton[look="nav"] {{ text-align: left; border: none; border-radius: 0; background: transparent;
         padding: {u}px {2 * u}px; min-height: {3 * u}px; }}
     QPushButton[look="nav"]:hover {{ background: {t.panel}; }}

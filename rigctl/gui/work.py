@@ -1,8 +1,8 @@
 """Long work beside the window: in a process of its own (numbers) or in a thread (files).
 
-Job: run a function elsewhere, hand its result back in the event loop, report progress, cancel. A worker process
-is used for whatever computes or imports much, because imports and Python loops in a thread would make the event
-loop stutter. Not its job: what is computed.
+Job: run a function elsewhere, hand its result back in the event loop, report progress, cancel. A worker
+process is used for whatever computes or imports much, because imports and Python loops in a thread would
+make the event loop stutter. Not its job: what is computed.
 """
 
 from __future__ import annotations

@@ -119,9 +119,12 @@ class Rig:
         )
 
     def request(self, *, dt_s: float, recording: bool) -> None:
-        """Length and kind of the blocks from the next one on; in real time none is longer than `block_s`."""
+        """Length and kind of the blocks from the next one on.
+
+        In real time none is longer than `block_s`, and all are whole: people look at the signals at any time.
+        """
         if self.context.time == "real":
-            dt_s = min(dt_s, self.config.block_s)
+            dt_s, recording = min(dt_s, self.config.block_s), True
         self._request = Request(round(dt_s * NS_PER_S), recording)
 
     def blocks(self) -> Iterator[Block]:

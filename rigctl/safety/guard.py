@@ -112,6 +112,8 @@ class Guard:
         self._setpoints: Any = None
         self._open_reason: str | None = None
         self._notes: list[Note] = []
+        self._resets_refused = 0
+        self._reset_refusal: tuple[int, str, str] = (0, "", "")
         self._last_refusal: tuple[str, str] | None = None
         self._trip_at: tuple[float, float] = (0.0, 0.0)  # rig time, clock
         self._watching_s = 0.0
@@ -152,7 +154,7 @@ class Guard:
             words, remedy = self._obstacle.words, self._obstacle.remedy
         return {
             "m": "status", "k": k, "state": self._latch.state.told, "nonce": nonce,
-            "cause": words, "remedy": remedy,
+            "cause": words, "remedy": remedy, "reset_refused": self._reset_refusal,
         }  # fmt: skip
 
     def take_open(self) -> str | None:
@@ -248,6 +250,8 @@ class Guard:
         )  # fmt: skip
         if (obstacle := next(obstacles, None)) is not None:
             self._refuse("refused_reset", obstacle.id, obstacle.words, remedy=obstacle.remedy)
+            self._resets_refused += 1
+            self._reset_refusal = (self._resets_refused, obstacle.words, obstacle.remedy)
             return
         if self._latch.state is State.TRIPPED:
             self._latch.reset()

@@ -11,8 +11,8 @@ The order of messages is in `docs/explanation/processes.md`.
 from __future__ import annotations
 
 import argparse
-import os
 import json
+import os
 import select
 import signal
 import sys

@@ -60,6 +60,9 @@ class PlayedGuard:
         if k >= self.trip_at:
             raise SafetyTrip("pressure above 41 bar", remedy="Look at the valve.")
 
+    def listen(self, k: int) -> bool:
+        return True
+
     def heartbeat(self, k: int, setpoints: dict[str, Any]) -> None:
         self.beats.append(k)
         self.setpoints.append(setpoints)
