@@ -38,7 +38,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from drivers.daq.collector import SETTLE_S, Collector
 from drivers.daq.rig_time import HostTime, RigTime, SoundTime
 from drivers.daq.source import AnySource, Master, Source, checked
-from rigctl.core.blocks import Block
+from rigctl.core.blocks import CLOCKS, Block
 from rigctl.core.channels import ChannelSpec, corrected
 from rigctl.core.errors import ConfigError, DeviceError
 from rigctl.core.registry import Registry
@@ -54,9 +54,6 @@ KINDS = {
     "encoder": "drivers.daq.can_sources:Encoder",
     "upp": "drivers.daq.pyrometer_upp:UppPyrometer",
 }
-CLOCKS = "clocks"
-"""Key of the status board, and so of `Block.status`: source -> offset, drift, jitter, counts."""
-
 RING_S = 16.0
 _POLL_S = 0.002  # for the end of a block
 _UPDATE_S = 0.02  # meanwhile, for the slow sources: each time costs as much as ten looks at the master

@@ -14,6 +14,10 @@ from numpy.typing import NDArray
 
 from rigctl.core.ring import SampleRing
 
+CLOCKS = "clocks"
+"""Key of `Block.status` on rigs whose sources have clocks of their own: source -> offset, drift, jitter and
+counts as measured lately. The source without an offset is the master: its count is the rig's time."""
+
 
 @dataclass(frozen=True, slots=True)
 class Block:

@@ -24,6 +24,8 @@ _UNITS_BY_SUFFIX = {
     "rpm": "1/min",
     "nm": "N·m",
     "pa": "Pa",
+    "ms": "ms",
+    "ppm": "ppm",
 }
 
 

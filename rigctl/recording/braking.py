@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rigctl.core.channels import ChannelData, ChannelSpec
 from rigctl.core.errors import RecordingError
-from rigctl.recording.spool import STARTED_MARK
+from rigctl.recording.spool import CLOCKS_MARK, STARTED_MARK
 from rigctl.recording.spool_reader import Mark, Spool
 from rigctl.signals.decimation import FilterDescription, decimate, design_decimation
 
@@ -51,6 +51,10 @@ class Outcome:
         """Rows of the table of events."""
         return max((len(column) for column in self.events.values()), default=0)
 
+
+Clocks = dict[str, dict[str, list[float]]]
+"""Clocks of a real rig's sources while the braking was recorded, by source: ``time_s`` (of the measurement,
+since the first sample), ``offset_ms``, ``drift_ppm``, … with unit in the name; all of one length."""
 
 Evaluator = Callable[[Mapping[str, ChannelData], Mapping[str, Any]], Outcome]
 """Evaluates the stored channels with settings taken from the head of the spool."""
@@ -87,6 +91,7 @@ class StoredBraking:
     metadata: dict[str, Any]
     outcome: Outcome
     bytes_cut: int
+    clocks: Clocks = field(default_factory=dict)
 
     @property
     def index(self) -> int:
@@ -161,12 +166,29 @@ def assemble(spool: Spool, evaluate: Evaluator) -> StoredBraking:
         marks=tuple(
             Mark(mark.name, mark.t_s - started, mark.values)
             for mark in spool.marks
-            if mark.name != STARTED_MARK
+            if mark.name not in (STARTED_MARK, CLOCKS_MARK)
         ),
+        clocks=_clocks(spool, started),
         metadata=header["metadata"],
         outcome=evaluate({name: c.data for name, c in channels.items()}, header["evaluation"]),
         bytes_cut=spool.bytes_cut,
     )
+
+
+def _clocks(spool: Spool, started_s: float) -> Clocks:
+    """All measurements of each source's clock, in columns."""
+    found: Clocks = {}
+    for mark in spool.marks:
+        if mark.name != CLOCKS_MARK:
+            continue
+        for source, state in mark.values.items():
+            columns = found.setdefault(source, {})
+            columns.setdefault("time_s", []).append(mark.t_s - started_s)
+            for name, value in state.items():
+                if isinstance(value, bool):  # the master says that it is one; it is the one without an offset
+                    continue
+                columns.setdefault(name, []).append(value)
+    return found
 
 
 def _store(spec: ChannelSpec, spool: Spool, factor: int) -> StoredChannel:

@@ -65,6 +65,9 @@ class BrakingFile:
         Lazy; time in s since the first sample.
     events : dict of str to ndarray
         Columns of the table of events.
+    clocks : dict of str to dict of str to ndarray
+        Clocks of a real rig's sources as measured during the braking: source -> time_s, drift_ppm, and (all
+        but the master's) offset_ms, …; empty on rigs with one clock.
     """
 
     path: Path
@@ -74,6 +77,7 @@ class BrakingFile:
     settings: dict[str, Any]
     channels: StoredChannels
     events: dict[str, NDArray[Any]]
+    clocks: dict[str, dict[str, NDArray[Any]]]
 
     @property
     def index(self) -> int:
@@ -121,11 +125,16 @@ def read_braking(path: Path) -> BrakingFile:
             metadata = json.loads(braking["metadata"][()])
             settings = json.loads(events["settings"][()])
             columns = {name: events[name][...] for name in found["events"]}
+            clocks = {
+                str(log.attrs["source"]): {name: log[name][...] for name in log}
+                for log in file.get("entry/clocks", {}).values()
+            }
         except (KeyError, TypeError, ValueError) as error:
             raise _not_a_braking(path, error) from error
     specs = {name: ChannelSpec(**mapping) for name, mapping in found["channels"].items()}
     found["path"] = str(path)
-    return BrakingFile(path, found, specification, metadata, settings, StoredChannels(path, specs), columns)
+    channels = StoredChannels(path, specs)
+    return BrakingFile(path, found, specification, metadata, settings, channels, columns, clocks)
 
 
 def read_summary(path: Path) -> dict[str, Any]:

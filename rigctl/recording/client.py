@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from rigctl.core import wire
-from rigctl.core.blocks import Block
+from rigctl.core.blocks import CLOCKS, Block
 from rigctl.core.errors import DeviceError, LinkClosed, RecordingError
 from rigctl.core.wire import Link, Message
+from rigctl.recording.spool import CLOCKS_MARK
 
 SOCKET_NAME: Final = "recorder.sock"
 MERGED_NS: Final = 250_000_000
@@ -70,6 +71,7 @@ class RecorderClient:
         }
         self._window_s = window_s
         self._names: tuple[str, ...] | None = None
+        self._clocks: Mapping[str, Any] | None = None  # as told for this braking
         self._copied_s = 0.0
         self._start_ns = self._stop_ns = 0  # rig time of the blocks held back; none when equal
         self._full_ns = 0  # they go with the first block from here on
@@ -108,11 +110,12 @@ class RecorderClient:
         names = tuple(channel["name"] for channel in specification["recording"]["channels"])
         self._link.send({"m": "begin", "specification": dict(specification), "t0_s": t0_s, **self._constant})
         self._names = names
+        self._clocks = None
         self._copied_s = t0_s
 
     def block(self, block: Block) -> None:
-        """Pass on one block: ranges of samples only, in one message with those after it. Does nothing while
-        no braking is recorded.
+        """Pass on one block: ranges of samples only, in one message with those after it, and what is new of
+        the clocks of the rig's sources. Does nothing while no braking is recorded.
         """
         names = self._names
         if names is None:
@@ -124,6 +127,10 @@ class RecorderClient:
             self._start_ns, self._full_ns, self._first = t_ns, t_ns + MERGED_NS, found
         self._last = found
         self._stop_ns = t_ns + block.dt_ns
+        clocks = block.status.get(CLOCKS)
+        if clocks and clocks != self._clocks:
+            self._clocks = clocks
+            self._link.send({"m": "mark", "name": CLOCKS_MARK, "t": block.end_s, "values": clocks})
 
     def mark(self, name: str, t_s: float, **values: Any) -> None:
         """State what happened in the braking, e.g. "pressure_onset", at rig time `t_s`; NaN becomes null."""

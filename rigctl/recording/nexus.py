@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+import re
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -44,6 +45,7 @@ def image(braking: StoredBraking) -> bytes:
         _channel(entry, channel, axes)
     _braking(entry, braking)
     _events(entry, braking)
+    _clocks(entry, braking)
     results = entry.group("results", "NXcollection")
     for name, value in braking.outcome.results.items():
         results.number(name, np.nan if value is None else value, unit_of(name))
@@ -141,6 +143,22 @@ def _events(entry: Group, braking: StoredBraking) -> None:
         group.text("error", braking.outcome.error)
 
 
+def _clocks(entry: Group, braking: StoredBraking) -> None:
+    """One log for each source; nothing where the rig has one clock only."""
+    if not braking.clocks:
+        return
+    group = entry.group("clocks", "NXcollection")
+    for source, columns in braking.clocks.items():
+        log = group.group(_nexus_name(source), "NXcollection", source=source)
+        for name, values in columns.items():
+            log.array(name, np.array(values), unit_of(name))
+
+
+def _nexus_name(text: str) -> str:
+    """As NeXus allows names of groups."""
+    return re.sub(r"[^A-Za-z0-9_]", "_", text)
+
+
 def summary(braking: StoredBraking) -> dict[str, Any]:
     """All but the samples, as plain JSON values (None instead of NaN)."""
     outcome = braking.outcome
@@ -163,4 +181,13 @@ def summary(braking: StoredBraking) -> dict[str, Any]:
             for name, column in outcome.events.items()
         },
         "evaluation_error": outcome.error,
+        **({"clocks": _newest(braking)} if braking.clocks else {}),
+    }
+
+
+def _newest(braking: StoredBraking) -> dict[str, dict[str, float]]:
+    """The last measurement of each clock."""
+    return {
+        source: {name: values[-1] for name, values in columns.items()}
+        for source, columns in braking.clocks.items()
     }

@@ -45,6 +45,8 @@ together less than 1 s.
 KIND_HEADER, KIND_DATA, KIND_MARK, KIND_END = 1, 2, 3, 4
 STARTED_MARK: Final = "recording_started"
 """Mark at the time of the first sample; its value `first` lists the count of it for each channel."""
+CLOCKS_MARK: Final = "clocks"
+"""Mark with the clocks of the rig's sources as measured then: source -> name -> number."""
 MISSING_MARK: Final = "samples_missing"
 """Mark of a spool into which some samples never came."""
 

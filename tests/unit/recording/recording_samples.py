@@ -5,7 +5,7 @@ Not a model of anything: noise, steps and a tone with known numbers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +89,7 @@ def write_spool(
     skip_blocks: frozenset[int] = frozenset(),
     specified: Mapping[str, Any] | None = None,
     block_s: float = BLOCK_S,
+    marks: Sequence[tuple[str, float, dict[str, Any]]] = (),
 ) -> dict[str, np.ndarray]:
     """Write the spool of a braking block by block; returns the samples. `status` None leaves out the end."""
     data = signals(seconds, seed)
@@ -102,6 +103,8 @@ def write_spool(
             writer.append(parts, 100.0 + (k + 1) * block_s)
         if k == 2:
             writer.mark("pressure_onset", 100.15, {"pressure_bar": 15.0})
+    for mark in marks:
+        writer.mark(*mark)
     if status is not None:
         writer.end(status, "")
     writer.close()

@@ -92,12 +92,55 @@ def test_silx_finds_the_default_plot(made: tuple[Path, dict[str, np.ndarray]]) -
 
 
 def test_nexus_check_finds_nothing(made: tuple[Path, dict[str, np.ndarray]]) -> None:
+    _check_nexus(made[0])
+
+
+def _check_nexus(path: Path) -> None:
     pytest.importorskip("nexusformat")
     nxcheck = Path(sys.executable).with_name("nxcheck")
-    run = subprocess.run([nxcheck, str(made[0])], capture_output=True, text=True, check=True)
+    run = subprocess.run([nxcheck, str(path)], capture_output=True, text=True, check=True)
     text = re.sub(r"\x1b\[[0-9;]*m", "", run.stdout + run.stderr)
     assert re.search(r"number of warnings: 0\b", text), text
     assert re.search(r"number of errors: 0\b", text), text
+
+
+def clock_state(drift_ppm: float, offset_ms: float | None = None) -> dict[str, float | bool]:
+    """As drivers put it on the status board; the master has no offset."""
+    state: dict[str, float | bool] = {"drift_ppm": drift_ppm, "jitter_ms": 0.1, "samples": 1000}
+    return state | (
+        {"master": True} if offset_ms is None else {"offset_ms": offset_ms, "lost": 2, "doubled": 0}
+    )
+
+
+def test_clocks_of_sources_are_kept_as_measured(tmp_path: Path) -> None:
+    first = {"rigmic": clock_state(-28.5), "amplifier 1": clock_state(30.0, -1042.0)}
+    second = {"rigmic": clock_state(-29.5), "amplifier 1": clock_state(31.0, -1042.5)}
+    marks = [("clocks", 101.05, first), ("clocks", 102.05, second)]
+    write_spool(tmp_path / "s", 2.5, marks=marks)
+    stored = assemble(read_spool(tmp_path / "s"), no_evaluation)
+    assert [mark.name for mark in stored.marks] == ["pressure_onset"]
+    path = tmp_path / "00001.h5"
+    write_part(path, file_image(stored))
+    with h5py.File(path) as file:
+        clocks = file["entry/clocks"]
+        assert set(clocks) == {"rigmic", "amplifier_1"}
+        assert clocks["amplifier_1"].attrs["source"] == "amplifier 1"
+        offset, drift = clocks["amplifier_1/offset_ms"], clocks["amplifier_1/drift_ppm"]
+        assert (offset.attrs["units"], drift.attrs["units"]) == ("ms", "ppm")
+        assert offset[...].tolist() == [-1042.0, -1042.5] and drift[...].tolist() == [30.0, 31.0]
+        assert "offset_ms" not in clocks["rigmic"]
+    read = read_braking(path)
+    np.testing.assert_allclose(read.clocks["amplifier 1"]["time_s"], [1.05, 2.05])
+    assert read.clocks["amplifier 1"]["lost"].tolist() == [2, 2]
+    assert read.clocks["rigmic"]["drift_ppm"].tolist() == [-28.5, -29.5]
+    assert read_summary(path)["clocks"]["amplifier 1"]["offset_ms"] == -1042.5
+    _check_nexus(path)
+
+
+def test_no_group_of_clocks_where_there_is_one_clock(made: tuple[Path, dict[str, np.ndarray]]) -> None:
+    with h5py.File(made[0]) as file:
+        assert "clocks" not in file["entry"]
+    assert read_braking(made[0]).clocks == {} and "clocks" not in read_summary(made[0])
 
 
 def test_only_filters_that_every_reader_has(made: tuple[Path, dict[str, np.ndarray]]) -> None:

@@ -71,6 +71,28 @@ def controller(ring: SampleRing) -> Iterator[Controller]:
         yield made
 
 
+def test_clocks_are_told_when_they_are_new(controller: Controller, ring: SampleRing) -> None:
+    def block(clocks: dict[str, Any]) -> None:
+        ranges = {spec.name: (0, 0) for spec in SPECS}
+        controller.client.block(Block(0, controller.t_ns, BLOCK_NS, ranges, ring, status={"clocks": clocks}))
+        controller.t_ns += BLOCK_NS
+
+    first, second = {"name": {"drift_ppm": 1.0}}, {"name": {"drift_ppm": 2.0}}
+    block(first)
+    assert controller.heard() == []  # nothing is recorded
+    controller.begin()
+    for clocks in (first, dict(first), second, {}):
+        block(clocks)
+    marks = [message for message in controller.heard() if message["m"] == "mark"]
+    assert [(mark["name"], mark["values"]) for mark in marks] == [("clocks", first), ("clocks", second)]
+    assert [mark["t"] for mark in marks] == [0.1, 0.2]
+    controller.client.end()
+    controller.heard()
+    controller.begin()  # each braking has its own
+    block(second)
+    assert [message["values"] for message in controller.heard()] == [second]
+
+
 def test_a_full_message_goes_when_the_next_block_has_come(controller: Controller) -> None:
     controller.begin()
     blocks = [controller.block() for _ in range(PER_MESSAGE)]
