@@ -42,11 +42,12 @@ def main(arguments: list[str] | None = None) -> int:
     settings = window_settings(options.settings)
     translators = install_language(app, wanted_language(settings, options.language))
     theme = make_theme(app, settings, options.theme)
-    rig = RigConnection()
+    rig = RigConnection(options.data.resolve())
     window = MainWindow(theme, settings, rig, options.data.resolve(), options.configs.resolve())
     if options.page:
         window.navigate(options.page)
     window.show()
+    rig.start()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: window.close())
     ticker = QTimer()  # lets Python see signals while Qt waits

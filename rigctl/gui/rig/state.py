@@ -1,7 +1,7 @@
 """What the window believes about the rig: one immutable value, made from controller and journal.
 
-Job: the words of the state bar and the reasons behind them. Plain data, no Qt: tested without a screen.
-Not its job: where the news come from (`rigctl.gui.rig.connection`).
+Job: the words of the state bar and the reasons behind them. Plain data, no Qt: tested without a screen. Not
+its job: where the news come from (`rigctl.gui.rig.connection`).
 """
 
 from __future__ import annotations
