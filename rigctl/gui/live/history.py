@@ -187,9 +187,9 @@ class ChannelHistory:
         Every valid sample of the stretch lies within the bin at its time; both bounds of a bin are samples.
         A bin that is cut by an end of the stretch is given whole.
         """
-        first = max(int(np.floor((from_s - self._origin_s) * self.rate_hz)), self._oldest())
-        stop = min(int(np.ceil((to_s - self._origin_s) * self.rate_hz)) + 1, self._stop)
-        if self._empty or stop <= first:
+        first, stop = self._slots(from_s, to_s)
+        stop = min(stop + 1, self._stop)
+        if stop <= first:
             none = np.empty(0, np.float32)
             return Envelope(from_s, 1.0 / self.rate_hz, none, none)
         level = (max((stop - first) // max(pixels, 1), 1)).bit_length() - 1
@@ -206,20 +206,30 @@ class ChannelHistory:
 
     def value(self, t_s: float) -> float:
         """The sample at a time; NaN when there is none."""
+        if self._empty or not np.isfinite(t_s):
+            return float("nan")
         slot = round((t_s - self._origin_s) * self.rate_hz)
-        if self._empty or not self._oldest() <= slot < self._stop:
+        if not self._oldest() <= slot < self._stop:
             return float("nan")
         return float(self._low[0][slot % self._capacity])
 
     def mean(self, from_s: float, to_s: float) -> float:
         """Mean of the valid samples of a stretch; NaN when there is none."""
-        first = max(int(np.floor((from_s - self._origin_s) * self.rate_hz)), self._oldest())
-        stop = min(int(np.ceil((to_s - self._origin_s) * self.rate_hz)), self._stop)
-        if self._empty or stop <= first:
+        first, stop = self._slots(from_s, to_s)
+        if stop <= first:
             return float("nan")
         values = self._take(self._low[0], first, stop)
         valid = values[~np.isnan(values)]
         return float(valid.mean(dtype=np.float64)) if len(valid) else float("nan")
+
+    def _slots(self, from_s: float, to_s: float) -> tuple[int, int]:
+        """First slot and the one after the last of a stretch, within what is kept."""
+        if self._empty or np.isnan(from_s) or np.isnan(to_s):
+            return 0, 0
+        oldest, stop = self._oldest(), self._stop
+        low = np.clip((from_s - self._origin_s) * self.rate_hz, oldest, stop)
+        high = np.clip((to_s - self._origin_s) * self.rate_hz, oldest, stop)
+        return int(np.floor(low)), int(np.ceil(high))
 
     @staticmethod
     def _take(ring: NDArray[np.float32], begin: int, end: int) -> NDArray[np.float32]:

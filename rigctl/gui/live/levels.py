@@ -17,6 +17,8 @@ from rigctl.gui.live.stft import level_db
 FAST_S = 0.125
 STEP_S = 0.005
 """Levels are given so often; in between the average moves by 0.2 dB at most."""
+SETTLING_S = 0.25
+"""After a gap the averages rise from nothing; levels are given once they are within 0.6 dB of the truth."""
 _CHUNKS = 10
 _TAPS = 4096
 _MEAN_S = 1.0
@@ -95,7 +97,7 @@ class LevelMeter:
         self._a = _Average(self.rate_hz, self.step)
 
     def feed(self, t_s: float, pascal: NDArray[np.floating]) -> Levels:
-        """Samples that begin at `t_s`; the levels that can be given now. After a gap all begins anew."""
+        """Samples that begin at `t_s`; levels that can be given now. After a gap all begins anew."""
         samples = np.asarray(pascal, np.float32)
         if np.isnan(samples).any():
             samples = np.nan_to_num(samples)
@@ -113,7 +115,7 @@ class LevelMeter:
             z, a = self._round(piece)
             plain.append(z)
             weighted.append(a)
-        before = max(int(np.ceil((self._begin_s - start_s) * self.levels_hz)), 0)
+        before = max(int(np.ceil((self._begin_s + SETTLING_S - start_s) * self.levels_hz)), 0)
         return Levels(
             start_s + before / self.levels_hz,
             level_db(np.concatenate(plain)[before:]),

@@ -65,7 +65,7 @@ class LiveSpectrum:
         self._tracks.feed(frames)
         if len(frames.power):
             self._take_newest(frames.t_s + (len(frames.power) - 1) * self._stft.hop_s, frames.power)
-        levels = self._meter.feed(t_s, pascal)
+        levels = self._meter.feed(t_s, pascal)  # none while the averages are still rising after a gap
         self.levels[LZF].append(levels.t_s, levels.lzf_db)
         self.levels[LAF].append(levels.t_s, levels.laf_db)
 

@@ -108,6 +108,16 @@ def test_jump_far_ahead_and_back_again():
     assert history.end_s == pytest.approx(0.01 + 100.0)
 
 
+def test_asking_an_empty_history_or_endless_times_is_harmless():
+    history = ChannelHistory(RATE_HZ, 1.0)
+    for _ in range(2):
+        assert np.isnan(history.value(history.end_s if history.empty else np.inf))
+        assert np.isnan(history.mean(np.nan, np.nan))
+        assert len(history.envelope(np.inf, np.inf, 10).low) <= 1
+        history.append(0.0, np.ones(10))
+    assert history.extremes(-np.inf, np.inf) == (1.0, 1.0)
+
+
 def test_strided_samples_are_held():
     history = ChannelHistory(RATE_HZ, 5.0)
     history.append(0.0, [1.0, 2.0, 3.0], stride=100)

@@ -1,4 +1,4 @@
-"""The source: announced ranges become samples with their time; late sound, losses and new rings are survived."""
+"""The source: announced ranges become samples with their time; late sound, losses, new rings are survived."""
 
 from pathlib import Path
 

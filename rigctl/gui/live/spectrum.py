@@ -1,0 +1,196 @@
+"""Spectrum of the newest sound with the threshold of squeal and the events that are going on.
+
+Job: levels over frequency, largest of the last time, squeal band, threshold line, marks with frequency
+and level. Not its job: finding events (`peaks`).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor
+
+from rigctl.gui.format import frequency_text, quantity_text
+from rigctl.gui.live.axes import PlainAxis
+from rigctl.gui.live.data import LiveData
+from rigctl.gui.live.groups import TimeGroup, XGroup
+from rigctl.gui.live.items import LineItem, OutsideItem, pen
+from rigctl.gui.live.peaks import LiveEvent
+from rigctl.gui.live.plot import LivePlot
+from rigctl.gui.live.sound import LiveSpectrum
+from rigctl.gui.theme import ThemeKeeper
+
+LEVELS_DB = (0.0, 120.0)
+_MARKS = 4
+_ABOVE_DB = 4.0
+
+
+class SpectrumPlot(LivePlot):
+    """Level over frequency.
+
+    Parameters
+    ----------
+    theme : ThemeKeeper
+    group : XGroup
+        Of the frequency axis.
+    time : TimeGroup
+        Tells which moment is shown: the newest, or none when an older stretch is looked at.
+    """
+
+    def __init__(self, theme: ThemeKeeper, group: XGroup, time: TimeGroup) -> None:
+        self._time = time
+        self._line: LineItem | None = None
+        self._sound: LiveSpectrum | None = None
+        super().__init__(theme, group, "", PlainAxis("bottom", theme, factor=1e-3))
+        self.title.setText(self.tr("Spectrum (dB re 20 µPa)"))
+        self.x_axis.name(self.tr("Frequency (kHz)"))
+        self._hold = LineItem(pen(theme.current.line))
+        self._outside = OutsideItem(theme.current.window, 255, vertical=True)
+        self._threshold = pg.InfiniteLine(angle=0, movable=False)
+        self._marks = pg.ScatterPlotItem(symbol="t", size=theme.px(1.5), pxMode=True)
+        self._labels = [pg.TextItem(anchor=(0.5, 1.3)) for _ in range(_MARKS)]
+        self._threshold_label = pg.TextItem(anchor=(1.0, 1.0))
+        self._line = LineItem(pen(theme.current.sound))
+        for order, item in enumerate(
+            (self._outside, self._hold, self._line, self._threshold, self._threshold_label, self._marks)
+        ):
+            item.setZValue(order - 10)
+            self.plot.addItem(item, ignoreBounds=True)
+        for label in self._labels:
+            self.plot.addItem(label, ignoreBounds=True)
+            label.hide()
+        self.take_look()
+
+    def take_look(self) -> None:
+        """Colours of the present theme."""
+        super().take_look()
+        if self._line is None:
+            return
+        look = self.theme.current
+        self._line.set_pen(pen(look.sound))
+        self._hold.set_pen(pen(look.plot_line, 1.0, Qt.PenStyle.DotLine))
+        self._outside.colour = look.panel
+        self._threshold.setPen(pen(look.muted, 1.0, Qt.PenStyle.DashLine))
+        self._marks.setBrush(look.amber)
+        self._marks.setPen(pen(look.on_amber))
+        self._marks.setSize(self.theme.px(1.5))
+        self._threshold_label.setColor(look.muted)
+        self._threshold_label.setFont(self.theme.font("small"))
+        for label in self._labels:
+            label.setColor(look.on_amber)
+            label.fill = pg.mkBrush(QColor(look.amber))
+            label.setFont(self.theme.font("small"))
+
+    def draw(self, data: LiveData) -> None:
+        """The newest frame."""
+        sound = self._sound = data.sound
+        whole = (0.0, 20_000.0 if sound is None else sound.rate_hz / 2)
+        x = self.group.window(whole)
+        self.set_ranges(x, LEVELS_DB)
+        self._show_settings(sound, x)
+        if self._line is None or sound is None or sound.spectrum_db is None or sound.hold_db is None:
+            self._show_events([], x)
+            self.show_hint(self.tr("No sound yet.") if math.isfinite(data.end_s) else "")
+            return
+        self.show_hint("")
+        for line, levels in ((self._line, sound.spectrum_db), (self._hold, sound.hold_db)):
+            line.set_points(*_largest(sound.line_hz, levels, x, self.pixels()))
+        going_on = [event for event in sound.events() if event.open]
+        self._show_events(sorted(going_on, key=lambda event: -event.level_db), x)
+
+    def _show_settings(self, sound: LiveSpectrum | None, x: tuple[float, float]) -> None:
+        if sound is None:
+            return
+        settings = sound.settings
+        if self._outside.band != settings.band_hz:
+            self._outside.band = settings.band_hz
+            self._threshold.setValue(settings.threshold_db)
+            words = self.tr("threshold {0}").format(quantity_text(settings.threshold_db, "dB", 0))
+            self._threshold_label.setText(words)
+        self._threshold_label.setPos(x[1], settings.threshold_db)
+
+    def _show_events(self, events: list[LiveEvent], x: tuple[float, float]) -> None:
+        """Marks on the level that the line has now; labels for the loudest."""
+        sound = self._sound
+        points: list[tuple[float, float, LiveEvent]] = []
+        for event in events:
+            if sound is not None and sound.spectrum_db is not None:
+                line = round(event.frequency_hz / sound.line_hz)
+                near = sound.spectrum_db[max(line - 2, 0) : line + 3]
+                points.append((event.frequency_hz, float(near.max()), event))
+        self._marks.setData([p[0] for p in points], [p[1] + _ABOVE_DB for p in points])
+        wanted = [point for point in points if not point[2].harmonic and x[0] <= point[0] <= x[1]]
+        per_pixel = [(high - low) / max(size, 1.0) for (low, high), size in zip(
+            self.view.viewRange(), (self.view.width(), self.view.height()), strict=True)]  # fmt: skip
+        placed: list[tuple[float, float]] = []
+        for number, label in enumerate(self._labels):
+            label.setVisible(number < len(wanted))
+            if number >= len(wanted):
+                continue
+            frequency_hz, level, _ = wanted[number]
+            label.setText(f"{frequency_text(frequency_hz)}  {quantity_text(level, 'dB', 0)}")
+            size = label.boundingRect().size()
+            wide, tall = size.width() * per_pixel[0], 1.05 * size.height() * per_pixel[1]
+            at_db = min(level + _ABOVE_DB, LEVELS_DB[1] - 1.3 * tall)
+            while any(abs(f - frequency_hz) < wide and abs(db - at_db) < tall for f, db in placed):
+                at_db -= tall
+            placed.append((frequency_hz, at_db))
+            inside = min(max(frequency_hz, x[0] + wide / 2), x[1] - wide / 2)
+            label.setPos(inside, at_db)
+
+    def value_text(self, data: LiveData) -> str:
+        """The loudest event that is going on."""
+        events = [] if data.sound is None else [event for event in data.sound.events() if event.open]
+        if not events:
+            return ""
+        loudest = max(events, key=lambda event: event.level_db)
+        words = self.tr("squeal {0}").format(frequency_text(loudest.frequency_hz))
+        return f"<b>▼ {words}</b>"
+
+    def _level(self, frequency_hz: float) -> float:
+        if self._sound is None or self._sound.spectrum_db is None:
+            return math.nan
+        line = round(frequency_hz / self._sound.line_hz)
+        inside = 0 <= line < len(self._sound.spectrum_db)
+        return float(self._sound.spectrum_db[line]) if inside else math.nan
+
+    def describe(self, x: float, y: float) -> str:
+        """Level of the line under the mouse."""
+        return f"{frequency_text(x)}   {quantity_text(self._level(x), 'dB', 1)}"
+
+    def cursor_value(self, x: float) -> float:
+        """Level at a cursor."""
+        return self._level(x)
+
+    def cursor_words(self, a: float, b: float) -> str:
+        """A, B and B−A."""
+        level_a, level_b = self._level(a), self._level(b)
+        return "    ".join(
+            (
+                f"A {frequency_text(a)}  {quantity_text(level_a, 'dB', 1)}",
+                f"B {frequency_text(b)}  {quantity_text(level_b, 'dB', 1)}",
+                f"B−A {frequency_text(b - a)}  {quantity_text(level_b - level_a, 'dB', 1)}",
+            )
+        )
+
+
+def _largest(
+    line_hz: float, levels: np.ndarray, x: tuple[float, float], pixels: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Lines of a stretch; with more than two per pixel, the largest of each group at its own frequency."""
+    first = max(int(x[0] / line_hz) - 1, 0)
+    stop = min(int(x[1] / line_hz) + 2, len(levels))
+    if stop <= first:
+        return np.empty(0), np.empty(0)
+    group = max((stop - first) // max(pixels, 1), 1)
+    y = levels[first:stop]
+    if group == 1:
+        return np.arange(first, stop) * line_hz, y
+    starts = np.arange(0, len(y), group)
+    padded = np.full(len(starts) * group, -np.inf)
+    padded[: len(y)] = y
+    at = padded.reshape(-1, group).argmax(axis=1) + starts
+    return (first + at) * line_hz, y[at]
