@@ -2,22 +2,27 @@
 #
 #   make run     environment, installation, then the squeal matrix of the paper on the simulated rig
 #   make test    environment with the tools for development, then linters, types and all tests
+#   make gui     the operator's window
 #   make figures the figures of the paper from our model, its numbers beside ours: figures/figures.html
 #   make lock    resolve the dependencies again (after a change in pyproject.toml)
 
 .DELETE_ON_ERROR:
-.PHONY: help run figures test system lint types lock clean
+.PHONY: help run gui figures test system lint types lock clean
 
 VENV := .venv
 BIN := $(VENV)/bin
 PROGRAM ?= configs/programs/squeal_matrix.toml
 RUN_ARGS ?=
+GUI_ARGS ?=
 
 help:
 	@sed -n 's/^#   //p' Makefile
 
 run: $(VENV)/.run
 	$(BIN)/rigctl run $(PROGRAM) $(RUN_ARGS)
+
+gui: $(VENV)/.run
+	$(BIN)/rigctl gui $(GUI_ARGS)
 
 figures: $(VENV)/.run
 	$(BIN)/rigctl model figures --out figures

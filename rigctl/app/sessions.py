@@ -26,6 +26,7 @@ from sequences.program import Program
 
 RUN_DIR_PREFIX = "rigctl-"
 FILE_NAME = "session.json"
+BASE_VARIABLE = "RIGCTL_RUN_BASE"
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,9 @@ class Session:
 
 
 def base_folder() -> Path:
-    """Where the folders of runs are: in memory where there is /dev/shm."""
+    """Where the folders of runs are: as `RIGCTL_RUN_BASE` says, else in memory where there is /dev/shm."""
+    if named := os.environ.get(BASE_VARIABLE):
+        return Path(named)
     shm = Path("/dev/shm")
     return shm if shm.is_dir() and _writable(shm) else Path(tempfile.gettempdir())
 
