@@ -157,7 +157,9 @@ def _remedy(settings: BusSettings, error: BaseException) -> str:
     bitrate = settings.arguments.get("bitrate", 1_000_000)
     number = _errno_of(error)
     remedy = "Check adapter, cable and channel; compare with `rigctl devices list`."
-    if isinstance(error, NotImplementedError) or "library not found" in str(error).lower():
+    if "msgpack" in str(error):
+        remedy = "Install it: pip install msgpack."
+    elif isinstance(error, NotImplementedError) or "library not found" in str(error).lower():
         remedy = (
             f"Install the vendor's library for the {settings.interface} interface (see python-can's manual), "
             "or correct the interface."

@@ -290,6 +290,11 @@ def _raiser(error: BaseException):
         ("slcan", OSError(errno.EACCES, "Permission denied"), "group dialout"),
         ("pcan", can.CanInterfaceNotImplementedError("no library"), "Install the vendor's library"),
         ("udp_multicast", can.CanInitializationError("no network"), "ip route add 239.0.0.0/8"),
+        (
+            "udp_multicast",
+            can.CanInterfaceNotImplementedError("msgpack not installed"),
+            "pip install msgpack",
+        ),
         ("slcan", TypeError("unexpected keyword argument 'x'"), "Correct the keys of [buses.main]"),
         ("kvaser", can.CanInitializationError("channel 7"), "rigctl devices list"),
         (
