@@ -81,16 +81,22 @@ def test_frozen_controller_trips_and_the_run_ends(cli):
 
 
 def test_frozen_watchdog_opens_the_relay(cli):
+    cli.rig = cli.edited_config(
+        "rigs/simulated.toml",
+        (r'^\[devices.safety\]\nkind = "simulated"', "\\g<0>\nrelay_timeout_s = 2.0"),
+    )
     program = cli.program(pressures=[2], temperatures=[30], duration_s=3000.0)
     run = cli.start_run(program, "a")
     wait_for_braking(cli, "a", 1)
     pid = cli.pid_of("a", "watchdog")
     os.kill(pid, signal.SIGSTOP)
     try:
-        text, _ = run.communicate(timeout=120)
-    finally:
+        ended = cli.wait_for("a", lambda r: (r.source, r.kind) == ("controller", "ended"))
+        assert ended.payload["cause"] == "the safety relay has opened."
+    finally:  # it stays frozen for longer: test_processes.py
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGCONT)
+    text, _ = run.communicate(timeout=120)
     assert run.returncode != 0, text
     assert "safety relay opened: no edge of the watchdog in time" in cli.logs("a")
 
@@ -121,7 +127,7 @@ def test_over_temperature_ends_in_the_safe_state(cli):
 
 
 def test_ctrl_c_stops_safely_and_says_how_to_go_on(cli):
-    program = cli.program(pressures=[10, 12], temperatures=[30], duration_s=20.0)
+    program = cli.program(pressures=[0.5, 0.6], temperatures=[30], duration_s=120.0)
     run = cli.start_run(program, "a")
     wait_for_braking(cli, "a", 1)
     run.send_signal(signal.SIGINT)
