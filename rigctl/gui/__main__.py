@@ -24,7 +24,9 @@ from rigctl.gui.window import MainWindow
 def parse(arguments: list[str]) -> argparse.Namespace:
     """Options of the window."""
     parser = argparse.ArgumentParser(prog="rigctl gui", description="The operator's window.")
-    parser.add_argument("--data", type=Path, default=Path("data"), help="folder of the campaigns [data]")
+    parser.add_argument(
+        "--data", type=Path, help="folder of the campaigns [as chosen in the window, or data]"
+    )
     parser.add_argument(
         "--configs", type=Path, default=Path("configs"), help="folder of rigs, programs [configs]"
     )
@@ -43,7 +45,8 @@ def main(arguments: list[str] | None = None) -> int:
     translators = install_language(app, wanted_language(settings, options.language))
     theme = make_theme(app, settings, options.theme)
     rig = RigConnection(options.data.resolve())
-    window = MainWindow(theme, settings, rig, options.data.resolve(), options.configs.resolve())
+    data: Path = options.data or Path(str(settings.value("data-folder", "")) or "data")
+    window = MainWindow(theme, settings, rig, data.resolve(), options.configs.resolve())
     if options.page:
         window.navigate(options.page)
     window.show()

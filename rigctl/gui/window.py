@@ -236,6 +236,7 @@ class MainWindow(QMainWindow):
             if page is self.stack.currentWidget():
                 self._settings.setValue("page", page_id)
                 page.deactivated()
+            page.closing()
         self._app().removeEventFilter(self)
         self.rig.close()
         self.work.close()

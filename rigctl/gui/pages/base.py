@@ -26,6 +26,9 @@ class Page(QWidget):
     def deactivated(self) -> None:
         """Another page is shown: stop timers and drawing."""
 
+    def closing(self) -> None:
+        """The window closes: end what goes on (processes, procedures); the rig is not touched."""
+
     def open(self, **what: Any) -> None:
         """Show something particular, asked for by another page (`Services.navigate`)."""
 
