@@ -186,15 +186,14 @@ class RigConnection(QObject):
         launch = self._launch
         if launch is None:
             return
-        code = launch.ended
-        if code is None:
+        if not launch.ended:
             if self._client is None and self.session is None and (words := launch.words(1)):
                 self._set(replace(self.state, phase=words))
             return
         self._launch = None
         if self.session is None:
             self._set(RigState())
-            self.refused.emit(launch.words() or self.tr("The session has ended with code {0}.").format(code))
+            self.refused.emit(launch.words() or self.tr("The session has ended at once, without a word."))
 
     def _look_at_disk(self) -> None:
         now = clock.monotonic()
