@@ -40,24 +40,29 @@ def wait(seconds: float, block: Block) -> Generator[None, Block, Block]:
 
 
 class Air:
-    """The ventilator, and since when the air is still."""
+    """The ventilator, and since when the air is still.
+
+    Whether it blows is asked of the device: one that cools by itself while nobody commands it blows already
+    when a program begins.
+    """
 
     def __init__(self, rig: Rig) -> None:
         self._ventilator = rig.ventilator
         self._settle_s = rig.config.capabilities.ventilator_settle_s
-        self._blowing = False
-        self.flow_m3_h = 0.0
         self._off_s = -math.inf
+
+    @property
+    def flow_m3_h(self) -> float:
+        """Air flow in force."""
+        return self._ventilator.commanded_m3_h
 
     def blow(self, flow_m3_h: float) -> None:
         """Set the air flow."""
-        self._blowing = flow_m3_h > 0.0
-        self.flow_m3_h = flow_m3_h
         self._ventilator.set_flow(flow_m3_h)
 
     def stop(self, block: Block) -> None:
         """Switch off, if it is on."""
-        if self._blowing:
+        if self.flow_m3_h > 0.0:
             self._off_s = block.end_s
             self.blow(0.0)
 

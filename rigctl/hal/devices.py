@@ -154,6 +154,11 @@ class PressureActuator(Device, Protocol):
 class Ventilator(Device, Protocol):
     """Cooling-air ventilator."""
 
+    @property
+    def commanded_m3_h(self) -> float:
+        """Air flow in force: what was set, or what the device blows by itself until then and without a lease."""
+        ...
+
     def set_flow(self, flow_m3_h: float) -> None:
         """Blow this much air; 0 is off."""
         ...

@@ -116,6 +116,11 @@ class SimulatedVentilator(_Simulated):
 
     role = "ventilator"
 
+    @property
+    def commanded_m3_h(self) -> float:
+        """See `Ventilator.commanded_m3_h`."""
+        return self._session.setpoints.ventilator_m3_h
+
     def set_flow(self, flow_m3_h: float) -> None:
         """See `Ventilator.set_flow`."""
         _require_finite("ventilator", flow_m3_h)

@@ -73,3 +73,26 @@ def test_ventilator_is_off_afterwards(make_rig):
     session.plant.set_condition(disc_degc=150.0)
     condition(rig, conditioner, 60.0)
     assert session.setpoints.ventilator_m3_h == 0.0
+
+
+class OwnAir:
+    """A ventilator that blows by itself until somebody commands it, as real ones do for safety."""
+
+    commanded_m3_h = 1000.0
+
+    def set_flow(self, flow_m3_h: float) -> None:
+        self.commanded_m3_h = flow_m3_h
+
+
+def test_air_that_a_device_blows_by_itself_is_stopped(make_rig):
+    """... before a braking, also without conditioning; and again when it has lost its lease meanwhile."""
+    rig, _ = make_rig()
+    rig.ventilator = OwnAir()
+    air = Air(rig)
+    block = next(rig.blocks())
+    assert air.flow_m3_h == 1000.0
+    air.stop(block)
+    assert air.flow_m3_h == 0.0 and not air.still(block)
+    rig.ventilator.commanded_m3_h = 1000.0
+    air.stop(block)
+    assert rig.ventilator.commanded_m3_h == 0.0
