@@ -28,6 +28,8 @@ tells a late sample from a lost one."""
 SUSPECT_S = 0.09
 """... and so long where all later ones are late by a period or more: lost, or a stalled machine?"""
 THRESHOLD = 0.75  # share of a period
+LATE_S = 2.0
+"""Samples given up may still come for so long; after that, one too many is a doubled one."""
 WARM_S = 0.5
 
 
@@ -43,8 +45,8 @@ class ClockState:
         How much faster it counts than the rig's master clock.
     jitter_s : float
         Largest delay of arrival beyond the shortest one in the newest batch.
-    samples, lost, doubled : int
-        Since it was opened.
+    samples, lost, late, doubled : int
+        Since it was opened. Late ones came after they had been given up: they are in no block.
     """
 
     offset_s: float
@@ -52,6 +54,7 @@ class ClockState:
     jitter_s: float
     samples: int
     lost: int
+    late: int
     doubled: int
 
     def to_mapping(self) -> dict[str, Any]:
@@ -60,7 +63,7 @@ class ClockState:
             "offset_ms": round(1e3 * self.offset_s, 3),
             "drift_ppm": round(self.drift_ppm, 1),
             "jitter_ms": round(1e3 * self.jitter_s, 3),
-            "samples": self.samples, "lost": self.lost, "doubled": self.doubled,
+            "samples": self.samples, "lost": self.lost, "late": self.late, "doubled": self.doubled,
         }  # fmt: skip
 
 
@@ -77,7 +80,9 @@ class Collector:
 
     def __init__(self, source: Source, now_s: float) -> None:
         self.source = source
-        self.samples = self.lost = self.doubled = 0
+        self.samples = self.lost = self.late = self.doubled = 0
+        self._given_up = 0  # samples counted as lost lately, and when
+        self._given_up_s = float("-inf")
         self.last_arrival_s = now_s
         self.fit = ClockFit(source.rate_hz) if source.counted else None
         self._since_s: float | None = None
@@ -166,13 +171,14 @@ class Collector:
     def state(self, master_drift_ppm: float, origin_s: float) -> ClockState:
         """Of the clock: drift against the master, offset against the rig's time zero at host `origin_s`."""
         if self.fit is None or not self.fit.ready:
-            return ClockState(0.0, 0.0, 0.0, self.samples, self.lost, self.doubled)
+            return ClockState(0.0, 0.0, 0.0, self.samples, self.lost, self.late, self.doubled)
         return ClockState(
             self.fit.line.at(0.0) - self.source.settings.delay_s - origin_s,
             self.fit.drift_ppm - master_drift_ppm,
             self.fit.jitter_s,
             self.samples,
             self.lost,
+            self.late,
             self.doubled,
         )
 
@@ -207,14 +213,28 @@ class Collector:
         _, raw = self._cut(settled)
         highest = np.maximum.accumulate(np.concatenate(([self._next - 1], numbers)))[:-1]
         good = numbers > highest
-        self.doubled += int(np.count_nonzero(~good))
+        repeated = int(np.count_nonzero(~good))
         numbers, raw, arrivals = numbers[good], raw[good], arrivals[good]
+        missing = int(numbers[-1]) + 1 - self._next - len(numbers) if len(numbers) else 0
+        self._count(missing, repeated, now_s)
         if len(numbers) == 0:
             return
-        self.lost += int(numbers[-1]) + 1 - self._next - len(numbers)
         self._next = int(numbers[-1]) + 1
         fit.add(numbers, arrivals)
         self._keep(numbers.astype(np.float64), numbers, raw)
+
+    def _count(self, missing: int, repeated: int, now_s: float) -> None:
+        """Numbers that never came, and samples beyond the count: those given up just before, or doubled."""
+        if missing:
+            recent = self._given_up if now_s - self._given_up_s < LATE_S else 0
+            self._given_up, self._given_up_s = recent + missing, now_s
+            self.lost += missing
+        if repeated:
+            late = min(repeated, self._given_up) if now_s - self._given_up_s < LATE_S else 0
+            self._given_up -= late
+            self.lost -= late
+            self.late += late
+            self.doubled += repeated - late
 
     def _keep(self, axis: NDArray[np.float64], numbers: NDArray[np.int64], raw: NDArray[np.float64]) -> None:
         x, y = self.source.convert(numbers, raw)
