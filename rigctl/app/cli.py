@@ -172,7 +172,7 @@ def stability(
 
 
 def _add_families() -> None:
-    from rigctl.app import annotating, bench, calibrations, control, devices, laboratory
+    from rigctl.app import annotating, bench, calibrations, comparing, control, devices, laboratory
     from rigctl.app.model import model_app
 
     app.add_typer(model_app(), name="model")
@@ -180,6 +180,7 @@ def _add_families() -> None:
     bench.register(app)
     annotating.register(app)
     calibrations.register(app)
+    comparing.register(app)
     control.register(app)
     laboratory.register(app)
 
