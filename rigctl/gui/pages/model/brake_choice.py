@@ -24,7 +24,7 @@ class BrakeChoice(QWidget):
 
     def __init__(self, theme: ThemeKeeper, folder: Path, none: str = "") -> None:
         super().__init__()
-        self._theme, self._folder, self._none = theme, folder, none
+        self._theme, self._folder, self._none = theme, folder.resolve(), none
         self._value: Path | None = None
         self.combo = QComboBox()
         self.combo.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
@@ -65,7 +65,7 @@ class BrakeChoice(QWidget):
 
     def setValue(self, path: Path | None) -> None:
         """Show a file; no signal."""
-        self._value = path
+        self._value = None if path is None else path.resolve()
         self.refresh()
 
     def setError(self, text: str) -> None:

@@ -272,8 +272,8 @@ class Advice:
     verdict : "recommended", "with care", "no effect", "not recommended"
     gain_1_s : fall of the sum of real parts
     worst_rise : largest rise of a real part, as share; of the mode at `rise_hz`
-    onset_change_bar : None where unknown
-    sentence : the same in words
+    onset_bar : onset of the modified brake; None where it never squeals
+    sure : identity of modes is certain throughout
     """
 
     title: str
@@ -282,9 +282,21 @@ class Advice:
     gain_1_s: float
     worst_rise: float
     rise_hz: float | None
-    onset_change_bar: float | None
+    onset_bar: float | None
     sure: bool
-    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class RankingRule:
+    """Thresholds of the verdicts: see `design.recommending.RecommendationRule`; friction looked at."""
+
+    below_hz: float
+    gain_share: float
+    least_gain_1_s: float
+    harm_share: float
+    onset_share: float
+    mu_from: float
+    mu_to: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,10 +306,17 @@ class Ranking:
     Attributes
     ----------
     step : share by which groups were changed
-    rule : numbers of the rule as texts: gain %, below kHz, harm %, onset %, friction from, to
+    onset_bar : of the brake as it is; None where an onset was not looked for (k = 0, or none)
     """
 
     setting: Setting
     step: float
+    onset_bar: float | None
     rows: tuple[Advice, ...]
-    rule: tuple[str, ...]
+    rule: RankingRule
+
+    def change_bar(self, row: Advice) -> float | None:
+        """Change of the onset by a modification; None where one of the two is missing."""
+        if self.onset_bar is None or row.onset_bar is None:
+            return None
+        return row.onset_bar - self.onset_bar

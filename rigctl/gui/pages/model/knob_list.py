@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor
 
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.model.data import Knob
-from rigctl.gui.pages.model.words import knob_title
+from rigctl.gui.pages.model.words import knob_title, side_text
 from rigctl.gui.theme import ThemeKeeper
 
 Index = QModelIndex | QPersistentModelIndex
@@ -83,14 +83,16 @@ class KnobTable(QAbstractTableModel):
         factor = self._factors.get(knob.key, 1.0)
         changed = factor != 1.0
         roles = Qt.ItemDataRole
+        found: Any = None
         if role == roles.DisplayRole:
-            return knob_title(knob) if index.column() == 0 else f"×{number_text(factor, 2)}"
-        if role == roles.ToolTipRole:
-            return "\n".join((knob_title(knob), *knob.members))
-        if role == roles.TextAlignmentRole and index.column() == 1:
-            return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        if role == roles.FontRole:
-            return self._theme.font("normal", bold=changed)
-        if role == roles.ForegroundRole:
-            return QColor(self._theme.current.blue if changed else self._theme.current.text)
-        return None
+            name = f"      {side_text(knob)}" if knob.side else knob_title(knob)
+            found = f"×{number_text(factor, 2)}" if index.column() else name
+        elif role == roles.ToolTipRole:
+            found = "\n".join((knob_title(knob), *knob.members))
+        elif role == roles.TextAlignmentRole and index.column() == 1:
+            found = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        elif role == roles.FontRole:
+            found = self._theme.font("normal", bold=changed)
+        elif role == roles.ForegroundRole:
+            found = QColor(self._theme.current.blue if changed else self._theme.current.text)
+        return found

@@ -23,6 +23,8 @@ _FAR = 1e9
 #: reach of a pick and of the read-out of a path, in steps of the grid
 _REACH, _NEAR = 2.5, 1.25
 _LABELS = 3
+#: the range of low-frequency brake squeal, as the ranking of modifications takes it
+SQUEAL_HZ = 5000.0
 
 
 class LocusPlot(pg.PlotWidget):
@@ -48,7 +50,7 @@ class LocusPlot(pg.PlotWidget):
         self._stable = pg.LinearRegionItem((-_FAR, 0.0), movable=False)
         self._unstable = pg.LinearRegionItem((0.0, _FAR), movable=False)
         self._axis = pg.InfiniteLine(0.0, angle=90)
-        self._paths = pg.PlotCurveItem(connect="finite")
+        self._paths = pg.PlotCurveItem(connect="finite", antialias=True)
         self._starts = pg.ScatterPlotItem(pxMode=True)
         self._crossings = pg.ScatterPlotItem(pxMode=True)
         self._ghosts = pg.ScatterPlotItem(pxMode=True)
@@ -163,14 +165,19 @@ class LocusPlot(pg.PlotWidget):
         gap = np.full((1, found.eigenvalues.shape[1]), np.nan)
         x = np.concatenate([found.eigenvalues.real, gap]).T.ravel()
         y = np.concatenate([found.eigenvalues.imag / (2.0 * np.pi), gap]).T.ravel()
-        self._paths.setData(x, y, pen=pg.mkPen(t.muted, width=1.5))
+        self._paths.setData(x, y, pen=pg.mkPen(t.muted, width=1))
         first = found.eigenvalues[0]
         self._starts.setData(
-            first.real, first.imag / (2.0 * np.pi), symbol="x", size=px(1), pen=pg.mkPen(t.muted), brush=None
+            first.real,
+            first.imag / (2.0 * np.pi),
+            symbol="x",
+            size=px(1),
+            pen=None,
+            brush=pg.mkBrush(t.muted),
         )
         self._crossings.setData(
             [0.0] * len(found.crossings), [frequency for _, frequency, _ in found.crossings],
-            symbol="+", size=px(1.75), pen=pg.mkPen(t.text, width=2), brush=None,
+            symbol="+", size=px(1.5), pen=None, brush=pg.mkBrush(t.text),
         )  # fmt: skip
         losing = [(value, frequency) for value, frequency, lost in found.crossings if lost]
         for text, (value, frequency) in zip(self._texts, losing, strict=False):
@@ -182,9 +189,17 @@ class LocusPlot(pg.PlotWidget):
 
     def show_all(self) -> None:
         """All poles in view, and the boundary."""
+        self._show_below(np.inf)
+
+    def show_squeal(self) -> None:
+        """Poles of the squeal range in view, and the boundary."""
+        self._show_below(SQUEAL_HZ)
+
+    def _show_below(self, limit_hz: float) -> None:
         if self._poles is None:
             return
-        shown = (*self._poles.poles, *self._poles.other)
+        every = (*self._poles.poles, *self._poles.other)
+        shown = [pole for pole in every if pole.frequency_hz < limit_hz] or every
         left = min(-100.0, *(p.real_part_1_s for p in shown))
         right = max(0.12 * -left, *(1.15 * p.real_part_1_s for p in shown))
         top = max(p.frequency_hz for p in shown)

@@ -6,7 +6,7 @@ Job: lay the three out and let them agree about the selected mode. Not its job: 
 from __future__ import annotations
 
 from PySide6.QtCore import QSettings, Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from rigctl.gui.pages.model.data import LocusLines, Poles
 from rigctl.gui.pages.model.locus_plot import LocusPlot
@@ -15,6 +15,7 @@ from rigctl.gui.pages.model.mode_view import ModeView
 from rigctl.gui.pages.model.state import ModelState
 from rigctl.gui.pages.model.words import axis_of
 from rigctl.gui.services import Services
+from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.gui.widgets.plot_dress import PictureMenu
 
 
@@ -28,15 +29,18 @@ class LocusTab(QWidget):
         self._fresh = True
         self.plot, self.table, self.view = LocusPlot(theme), ModeTable(theme), ModeView(theme)
         self.plot.setObjectName("model-locus")
-        self.path, self.under_mouse = QLabel(), QLabel()
+        self.path, self.under_mouse = ElidedLabel(), ElidedLabel()
         self.under_mouse.setProperty("look", "muted")
-        self.all_modes = QPushButton(self.tr("&All modes"))
+        self.all_modes = QPushButton(self.tr("&All"))
         self.all_modes.setToolTip(self.tr("All poles in view"))
-        self.boundary = QPushButton(self.tr("&Near the boundary"))
+        self.squeal = QPushButton(self.tr("&To 5 kHz"))
+        self.squeal.setToolTip(self.tr("Poles of the squeal range in view"))
+        self.boundary = QPushButton(self.tr("Bou&ndary"))
         self.boundary.setToolTip(self.tr("A closer look at the modes that couple or become unstable first"))
         self.menu = PictureMenu(self.plot, "root-locus", services.notify)
-        self.menu.add(self.all_modes.text().replace("&", ""), self.plot.show_all)
-        self.menu.add(self.boundary.text().replace("&", ""), self.plot.show_boundary)
+        self.menu.add(self.tr("View: all modes"), self.plot.show_all)
+        self.menu.add(self.tr("View: squeal range"), self.plot.show_squeal)
+        self.menu.add(self.tr("View: near the boundary"), self.plot.show_boundary)
         self.view_menu = PictureMenu(self.view.plot, "mode", services.notify)
         self._arrange()
         self._connect()
@@ -49,6 +53,7 @@ class LocusTab(QWidget):
         self._bar = QHBoxLayout()
         self._bar.addWidget(self.path, 1)
         self._bar.addWidget(self.all_modes)
+        self._bar.addWidget(self.squeal)
         self._bar.addWidget(self.boundary)
         self._left.addLayout(self._bar)
         self._left.addWidget(self.plot, 1)
@@ -61,9 +66,10 @@ class LocusTab(QWidget):
         self.split, self.split_right = QSplitter(Qt.Orientation.Horizontal), right
         self.split.addWidget(left)
         self.split.addWidget(right)
-        self.split.setStretchFactor(0, 3)
-        self.split.setStretchFactor(1, 2)
+        self.split.setStretchFactor(0, 1)
+        self.split.setSizes([self._theme.px(60), self._theme.px(46)])
         self.split.setChildrenCollapsible(False)
+        right.setSizes([self._theme.px(38), self._theme.px(40)])
         self._whole = QVBoxLayout(self)
         self._whole.addWidget(self.split)
 
@@ -79,6 +85,7 @@ class LocusTab(QWidget):
         self.table.picked.connect(state.select)
         self.plot.pointed.connect(self._say)
         self.all_modes.clicked.connect(self.plot.show_all)
+        self.squeal.clicked.connect(self.plot.show_squeal)
         self.boundary.clicked.connect(self.plot.show_boundary)
 
     def _restyle(self) -> None:
@@ -109,12 +116,10 @@ class LocusTab(QWidget):
         self.view.show_poles(poles)
         if self._fresh:  # a new brake: afterwards the axes stay as a person has them
             self._fresh = False
-            self.plot.show_all()
+            self.plot.show_squeal()
 
     def _show_locus(self, locus: LocusLines) -> None:
-        self.path.setText(self.tr("Path over: {0}").format(axis_of(locus.over, self._state.facts)))
-        self.path.setProperty("look", "")
-        self.path.style().polish(self.path)
+        self.path.setText(self.tr("Path: {0}").format(axis_of(locus.over, self._state.facts)))
         self.plot.show_locus(locus)
 
     def _fade(self) -> None:

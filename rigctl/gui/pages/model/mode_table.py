@@ -51,9 +51,11 @@ class ModeRows(QAbstractTableModel):
             return None
         if role == Qt.ItemDataRole.DisplayRole:
             return (
-                self.tr("Mode"), self.tr("State"), self.tr("Frequency\n[Hz]"), self.tr("Damping\nratio [%]"),
+                self.tr("No."), self.tr("State"), self.tr("Frequency\n[Hz]"), self.tr("Damping\n[%]"),
                 self.tr("Real part\n[1/s]"),
             )[section]  # fmt: skip
+        if role == Qt.ItemDataRole.ToolTipRole and section == 3:
+            return self.tr("Damping ratio −Re / |λ|, percent of critical; negative: the mode grows")
         if role == Qt.ItemDataRole.TextAlignmentRole:
             return int(_alignment(section))
         return None
@@ -107,6 +109,7 @@ class ModeTable(QTableView):
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.selectionModel().currentRowChanged.connect(self._on_row)
         theme.changed.connect(self._restyle)
         self._restyle()

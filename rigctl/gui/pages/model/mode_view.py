@@ -17,11 +17,13 @@ from rigctl.gui.pages.model.brake_item import BrakeItem
 from rigctl.gui.pages.model.data import Poles, Shape
 from rigctl.gui.pages.model.words import pole_text
 from rigctl.gui.theme import ThemeKeeper
+from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.model.drawn_brake import label_of
 
 #: time of one period on screen, and between pictures
 PERIOD_S, FRAME_MS = 1.6, 33
-_LEAST_SHARE, _MOST_NAMES = 0.1, 3
+#: lines of words, bodies or springs named at most, and the share from which they are named
+_LINES, _MOST_NAMES, _LEAST_SHARE = 3, 3, 0.1
 
 
 class ModeView(QWidget):
@@ -35,9 +37,8 @@ class ModeView(QWidget):
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)
         self._timer.timeout.connect(self._tick)
-        self.title = QLabel()
+        self.title = ElidedLabel()
         self.title.setProperty("look", "title")
-        self.title.setWordWrap(True)
         self.plot = pg.PlotWidget()
         plot_item: Any = self.plot.getPlotItem()
         self._plot_item = plot_item
@@ -60,9 +61,9 @@ class ModeView(QWidget):
         self.phase.setPageStep(15)
         self.phase.setToolTip(self.tr("Phase within the period; moving it stops the motion"))
         self.phase_text = QLabel()
-        self.facts = QLabel()
-        self.facts.setWordWrap(True)
-        self.facts.setProperty("look", "muted")
+        self.facts = [ElidedLabel() for _ in range(_LINES)]
+        for line in self.facts:
+            line.setProperty("look", "muted")
         self._arrange()
         self.play.clicked.connect(self._toggle)
         self.amplitude.valueChanged.connect(self._show)
@@ -89,17 +90,19 @@ class ModeView(QWidget):
         self._grid.addWidget(self.phase_text, 1, 3)
         self._grid.setColumnStretch(2, 1)
         self._column.addLayout(self._grid)
-        self._column.addWidget(self.facts)
+        for line in self.facts:
+            self._column.addWidget(line)
 
     def _restyle(self) -> None:
         px = self._theme.px
-        self._column.setSpacing(px(1))
+        self._column.setSpacing(px(0.5))
         self._grid.setHorizontalSpacing(px(1))
         self._grid.setVerticalSpacing(px(0.5))
         self.plot.setBackground(self._theme.current.plot)
-        self.plot.setMinimumHeight(px(20))
+        self.plot.setMinimumHeight(px(14))
         self.phase_text.setMinimumWidth(self.phase_text.fontMetrics().horizontalAdvance("000°"))
-        self.facts.setFont(self._theme.font("small"))
+        for line in self.facts:
+            line.setFont(self._theme.font("small"))
         for text in self._names.values():
             text.setColor(self._theme.current.text)
             text.setFont(self._theme.font("small"))
@@ -112,19 +115,21 @@ class ModeView(QWidget):
         if poles is None:
             self.item.show_shape(None)
             self.title.clear()
-            self.facts.clear()
+            for line in self.facts:
+                line.clear()
             self._name_bodies()
             return
         before, shape = self.item.shape_shown, poles.shape
         self.item.show_shape(shape)
         self.title.setText(pole_text(poles.selected))
-        self.facts.setText(self._words(shape))
+        for line, text in zip(self.facts, self._words(shape), strict=True):
+            line.setText(text)
         self._name_bodies()
         if before is None or before.drawing.box != shape.drawing.box:
             self._box.setRange(self.item.boundingRect(), padding=0.0)
         self._show()
 
-    def _words(self, shape: Shape) -> str:
+    def _words(self, shape: Shape) -> list[str]:
         def listed(rows: tuple[tuple[str, float], ...], *, bodies: bool) -> str:
             kept = [row for row in rows if row[1] >= _LEAST_SHARE][:_MOST_NAMES] or list(rows[:1])
             return ", ".join(
@@ -140,8 +145,8 @@ class ModeView(QWidget):
             ),
         ]
         if shape.doubtful:
-            lines.append(self.tr("Two modes nearly coincide: the shape is hardly its own."))
-        return "\n".join(lines)
+            lines[-1] = self.tr("Two modes nearly coincide: the shape is hardly its own.")
+        return lines
 
     def _name_bodies(self) -> None:
         places = self.item.label_places()

@@ -14,6 +14,8 @@ from PySide6.QtWidgets import QSplitter, QTabWidget, QVBoxLayout
 from rigctl.gui.pages.base import Page
 from rigctl.gui.pages.model.header import ModelHeader
 from rigctl.gui.pages.model.locus_tab import LocusTab
+from rigctl.gui.pages.model.map_tab import MapTab
+from rigctl.gui.pages.model.ranking_tab import RankingTab
 from rigctl.gui.pages.model.sliders_panel import SlidersPanel
 from rigctl.gui.pages.model.state import ModelState
 from rigctl.gui.services import Services
@@ -31,7 +33,12 @@ class ModelPage(Page):
         self.tabs = QTabWidget()
         self.tabs.setObjectName("model-tabs")
         self.tabs.setDocumentMode(True)
+        self.map = MapTab(self.state, services)
+        self.ranking = RankingTab(self.state, services)
         self.tabs.addTab(self.locus, self.tr("Root &locus"))
+        self.tabs.addTab(self.map, self.tr("Stability &map"))
+        self.tabs.addTab(self.ranking, self.tr("What h&elps"))
+        self.tabs.currentChanged.connect(self._tab_changed)
         self.split = QSplitter(Qt.Orientation.Horizontal)
         self.split.addWidget(self.sliders)
         self.split.addWidget(self.tabs)
@@ -44,7 +51,7 @@ class ModelPage(Page):
         column.addWidget(self.split, 1)
         services.theme.changed.connect(self._restyle)
         self._restyle()
-        self._begun = False
+        self._begun, self._active = False, False
         self._brake: Path | None = self.header.brake.first()
         self._other: Path | None = None
 
@@ -65,11 +72,19 @@ class ModelPage(Page):
             if self._other is not None:
                 self.header.other.setValue(self._other)
                 self.state.compare(self._other)
-        self.locus.view.setSeen(True)
+        self._active = True
+        self._tab_changed()
 
     def deactivated(self) -> None:
-        """Nothing moves unseen."""
-        self.locus.view.setSeen(False)
+        """Nothing moves and nothing is computed unseen."""
+        self._active = False
+        self._tab_changed()
+
+    def _tab_changed(self) -> None:
+        shown = self.tabs.currentWidget() if self._active else None
+        self.locus.view.setSeen(shown is self.locus)
+        self.map.set_seen(shown is self.map)
+        self.ranking.set_seen(shown is self.ranking)
 
     def open(self, **what: Any) -> None:
         """``brake=path``: study that brake file."""

@@ -38,6 +38,7 @@ class KnobSlider(QWidget):
         self.number.setDecimals(decimals)
         self.number.setSingleStep(step)
         self.number.setKeyboardTracking(False)
+        self.number.setButtonSymbols(QDoubleSpinBox.ButtonSymbols.PlusMinus)
         self.number.setAlignment(Qt.AlignmentFlag.AlignRight)
         if unit:
             self.number.setSuffix(f"\u202f{unit}")

@@ -22,6 +22,7 @@ from rigctl.gui.pages.model.data import (
     MapAxis,
     Measured,
     Ranking,
+    RankingRule,
     Setting,
     StabilityMap,
 )
@@ -30,6 +31,7 @@ from rigctl.gui.pages.model.worker import brake_of, designed
 if TYPE_CHECKING:
     from rigctl.analysis.campaign_table import CampaignTable
     from rigctl.model.output import Study
+    from sim_hardware.brake_model.design.recommending import Recommendations
     from sim_hardware.brake_model.design.variations import Variation
     from sim_hardware.brake_model.eigen.maps import EigenvalueMap
 
@@ -131,7 +133,6 @@ def ranking(file: BrakeFile, setting: Setting, step: float) -> Ranking:
         the brake has no parameter groups, or a value becomes impossible
     """
     from rigctl.core.errors import ConfigError
-    from rigctl.model.advice import sentence
     from rigctl.model.loading import study_errors
     from sim_hardware.brake_model.design.recommending import recommend
     from sim_hardware.brake_model.design.variations import all_variations
@@ -145,29 +146,35 @@ def ranking(file: BrakeFile, setting: Setting, step: float) -> Ranking:
     with study_errors(str(file.path)):
         model, values = designed(file, setting)
         found = recommend(model, all_variations(model, step), values)
-        rows = []
-        for k in found.order.tolist():
-            change, harm = float(found.onset_changes[k]), float(found.harm[k])
-            rows.append(
-                Advice(
-                    found.variations[k].title,
-                    _factors(found.variations[k], step),
-                    found.verdicts[k],
-                    float(found.gains[k]),
-                    harm,
-                    float(found.resolved.frequencies_hz[found.harmed[k]]) if harm > 0.0 else None,
-                    change if np.isfinite(change) else None,
-                    bool(found.sure[k]),
-                    sentence(found, k).removeprefix(f"{found.variations[k].title}: "),
-                )
-            )
-        rule = (
-            f"{100 * found.rule.least_gain:g}", f"{found.rule.below_hz / 1e3:g}",
-            f"{100 * found.rule.harm:g}", f"{100 * found.rule.onset:g}",
-            f"{min(found.mus):g}", f"{max(found.mus):g}",
-        )  # fmt: skip
-        return Ranking(setting, step, tuple(rows), rule)
+        onset = found.onset
+        rows = [_advice(found, k, step) for k in found.order.tolist()]
+        return Ranking(
+            setting, step, None if onset is None else float(onset.values[0]), tuple(rows), _rule(found)
+        )
     raise AssertionError  # `study_errors` has raised
+
+
+def _advice(found: Recommendations, k: int, step: float) -> Advice:
+    harm = float(found.harm[k])
+    onset = np.nan if found.onset is None else float(found.onset.values[k + 1])
+    return Advice(
+        found.variations[k].title,
+        _factors(found.variations[k], step),
+        found.verdicts[k],
+        float(found.gains[k]),
+        harm,
+        float(found.resolved.frequencies_hz[found.harmed[k]]) if harm > 0.0 else None,
+        onset if np.isfinite(onset) else None,
+        bool(found.sure[k]),
+    )
+
+
+def _rule(found: Recommendations) -> RankingRule:
+    rule = found.rule
+    return RankingRule(
+        rule.below_hz, rule.least_gain, found.least_gain_1_s, rule.harm, rule.onset,
+        min(found.mus), max(found.mus),
+    )  # fmt: skip
 
 
 def _factors(way: Variation, step: float) -> Mapping[str, float]:

@@ -8,21 +8,35 @@ from __future__ import annotations
 from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
 
 from rigctl.gui.format import frequency_text, number_text, quantity_text
-from rigctl.gui.pages.model.data import MU, PRESSURE, SLOPE, BrakeFacts, Knob, OnsetFound, Pole, Setting
+from rigctl.gui.pages.model.data import (
+    MU,
+    PRESSURE,
+    SLOPE,
+    Advice,
+    BrakeFacts,
+    Knob,
+    OnsetFound,
+    Pole,
+    Ranking,
+    RankingRule,
+    Setting,
+)
 
 CONTEXT = "model"
+#: largest rise, as share, of which nobody speaks
+_NO_RISE = 1e-4
 STABLE_MARK, UNSTABLE_MARK = "●", "▲"
 
 _NAMES = {
     MU: QT_TRANSLATE_NOOP("model", "Coefficient of friction µ"),
     PRESSURE: QT_TRANSLATE_NOOP("model", "Brake pressure p"),
-    SLOPE: QT_TRANSLATE_NOOP("model", "Falling slope of friction k"),
+    SLOPE: QT_TRANSLATE_NOOP("model", "Falling slope k"),
 }
 UNITS = {MU: "", PRESSURE: "bar", SLOPE: "s/m"}
 DECIMALS = {MU: 2, PRESSURE: 1, SLOPE: 4}
 _SIDES = {
-    "leading": QT_TRANSLATE_NOOP("model", "{0}, leading side"),
-    "trailing": QT_TRANSLATE_NOOP("model", "{0}, trailing side"),
+    "leading": QT_TRANSLATE_NOOP("model", "leading side"),
+    "trailing": QT_TRANSLATE_NOOP("model", "trailing side"),
 }
 
 
@@ -34,8 +48,13 @@ def tr(text: str) -> str:
 def knob_title(knob: Knob) -> str:
     """Name of a parameter group, of one side of it, or of a quantity with its unit."""
     if knob.side:
-        return tr(str(_SIDES[knob.side])).format(knob.title)
+        return f"{knob.title}, {side_text(knob)}"
     return knob.title if knob.group or not knob.unit else f"{knob.title}  [{knob.unit}]"
+
+
+def side_text(knob: Knob) -> str:
+    """Which side of a group a knob changes; "" where it is not one side."""
+    return tr(str(_SIDES[knob.side])) if knob.side else ""
 
 
 def title_of(key: str, facts: BrakeFacts | None) -> str:
@@ -132,3 +151,48 @@ def verdict_text(verdict: str) -> str:
         "not recommended": QCoreApplication.translate("model", "not recommended"),
     }
     return texts[verdict]
+
+
+def advice_text(row: Advice, ranking: Ranking) -> str:
+    """What a modification does, in words (as `rigctl.model.advice.sentence` says it)."""
+    translate, rule = QCoreApplication.translate, ranking.rule
+    below, gain = f"{rule.below_hz / 1e3:g}", row.gain_1_s
+    if gain > rule.least_gain_1_s:
+        text = translate(
+            "model", "lowers the real parts below {0} kHz by {1} 1/s in all at every friction from {2} to {3}"
+        )
+        words = [text.format(below, f"{gain:.3g}", f"{rule.mu_from:g}", f"{rule.mu_to:g}")]
+    elif gain < -rule.least_gain_1_s:
+        text = translate("model", "raises the real parts below {0} kHz by up to {1} 1/s in all")
+        words = [text.format(below, f"{-gain:.3g}")]
+    else:
+        words = [translate("model", "hardly changes the real parts below {0} kHz").format(below)]
+    if row.worst_rise <= _NO_RISE:
+        words.append(translate("model", "makes no mode worse"))
+    else:
+        text = translate("model", "raises that of the mode at {0} Hz by {1} %")
+        words.append(text.format(f"{row.rise_hz:.0f}", f"{100.0 * row.worst_rise:.2g}"))
+    change = ranking.change_bar(row)
+    if change is not None and ranking.onset_bar is not None and row.onset_bar is not None:
+        if abs(change) <= rule.onset_share * ranking.onset_bar:
+            words.append(translate("model", "leaves the onset at {0} bar").format(f"{row.onset_bar:.2f}"))
+        else:
+            text = translate("model", "moves the onset from {0} to {1} bar")
+            words.append(text.format(f"{ranking.onset_bar:.2f}", f"{row.onset_bar:.2f}"))
+    elif ranking.onset_bar is not None:
+        words.append(translate("model", "stays stable over the whole range of pressure"))
+    return f"{row.title}: {'; '.join(words)}"
+
+
+def rule_text(rule: RankingRule) -> str:
+    """How verdicts are made."""
+    text = QCoreApplication.translate(
+        "model",
+        "Gain: the sum of real parts below {0} kHz falls at every friction from {1} to {2} by more than {3} % "
+        "of their mean. Harm: a real part rises by more than {4} % of itself. "
+        "Onset: moves by more than {5} %.",
+    )
+    return text.format(
+        f"{rule.below_hz / 1e3:g}", f"{rule.mu_from:g}", f"{rule.mu_to:g}", f"{100 * rule.gain_share:g}",
+        f"{100 * rule.harm_share:g}", f"{100 * rule.onset_share:g}",
+    )  # fmt: skip
