@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import json
 import logging
 import os
 import socket
@@ -15,10 +16,11 @@ import stat
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from rigctl.core.errors import DeviceError
-from rigctl.hal.bench_paths import PREFIX, bench_folder
+from rigctl.hal.bench_paths import PREFIX, READY_NAME, bench_folder
 
 PROBED_RATES_HZ = (40_000, 44_100, 48_000, 51_200, 96_000, 192_000)
 _ON_THE_NETWORK = ("socketcand",)  # asks by broadcast and waits four seconds
@@ -87,7 +89,7 @@ class SoundDevice:
 
 @dataclass(frozen=True, slots=True)
 class BenchPort:
-    """A port of a running bench: name for the rig file, and where it leads."""
+    """A port or the microphone of a running bench: name for the rig file, and where it leads."""
 
     port: str
     path: str
@@ -211,7 +213,19 @@ def bench_ports() -> list[BenchPort]:
             continue  # the link of a bench that is gone
         if stat.S_ISCHR(mode):
             ports.append(BenchPort(f"{PREFIX}{entry.name}", os.path.realpath(entry)))
-    return ports
+    return ports + _bench_microphone(folder)
+
+
+def _bench_microphone(folder: Path) -> list[BenchPort]:
+    """The microphone of a running bench: one whose sound server takes connections."""
+    server = folder / "sound" / "native"
+    try:
+        microphone = json.loads((folder / READY_NAME).read_text()).get("microphone")
+        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
+            probe.connect(str(server))
+    except (OSError, ValueError):
+        return []
+    return [BenchPort(f"{PREFIX}{microphone['device']}", str(server))] if microphone else []
 
 
 def _sounddevice() -> Any:

@@ -152,7 +152,8 @@ class PolledDrive:
             report, age_s, error = self._report, time.monotonic() - self._report_s, self._error
         stale = "" if report is not None and age_s <= STALE_S else f"no answer for {age_s:.1f} s"
         lived_s = time.monotonic() - self._opened_s
-        rate_hz = self._cycles / lived_s if lived_s > 0 else None
+        polled = lived_s > 0 and round_trips == 0  # those exchanges took the place of cycles
+        rate_hz = self._cycles / lived_s if polled else None
         fault = stale or (str(error) if error else "")
         values = (
             Reading(

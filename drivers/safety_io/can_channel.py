@@ -60,7 +60,7 @@ class CanSafetyChannel:
         self._bits: int | None = None
         self._heard_s = float("-inf")
         self._frames = 0
-        self._opened_s = 0.0
+        self._first_s = 0.0
         self._came = threading.Event()
         self._closing = threading.Event()
         self._unsubscribe: Callable[[], None] | None = None
@@ -74,7 +74,7 @@ class CanSafetyChannel:
         try:
             self._closing.clear()
             self._came.clear()
-            self._bits, self._frames, self._opened_s = None, 0, time.monotonic()
+            self._bits, self._frames = None, 0
             self._unsubscribe = self._session.subscribe(self._io.state_cob_id, self._on_state)
             self._await_state()
         except BaseException:
@@ -149,11 +149,11 @@ class CanSafetyChannel:
         """See `rigctl.hal.diagnosis`. The node only talks by itself: there are no round trips."""
         self._session.check()
         with self._lock:
-            bits, heard_s, frames = self._bits, self._heard_s, self._frames
+            bits, heard_s, frames, first_s = self._bits, self._heard_s, self._frames, self._first_s
         now_s = time.monotonic()
         age_s = now_s - heard_s
         stale = bits is None or age_s > STALE_S
-        rate_hz = frames / max(now_s - self._opened_s, 1e-3)
+        rate_hz = (frames - 1) / (heard_s - first_s) if frames > 1 else None
         states = (("relay closed", _RELAY), ("e-stop ok", _ESTOP_OK), ("doors ok", _DOORS_OK),
                   ("drive enable", _ENABLED))  # fmt: skip
         values = tuple(
@@ -183,6 +183,8 @@ class CanSafetyChannel:
         with self._lock:
             changed = bits != self._bits or timestamp_s - self._heard_s > STALE_S
             self._bits, self._heard_s = bits, timestamp_s
+            if self._frames == 0:
+                self._first_s = timestamp_s
             self._frames += 1
         if changed:
             self._publish(bits, "")

@@ -84,7 +84,7 @@ class CanopenVentilator:
         self._ends: list[Callable[[], None]] = []
 
     def open(self) -> None:
-        """See `Device.open`. Afterwards the device blows its error value, full air, until `set_flow`.
+        """See `Device.open`. Afterwards the device blows full air until `set_flow`.
 
         Raises
         ------
@@ -100,6 +100,7 @@ class CanopenVentilator:
             self._changed = self._ensure_safe()
             node.start()
             node.watch()
+            self._send(s.full_scale_counts)  # safe without our heartbeat: nobody need renew it
             self._ends.append(self._network.cycle.add(self._renew, _RENEW_S, node.ended))
             self._opened = True
         except BaseException:

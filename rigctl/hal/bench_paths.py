@@ -12,6 +12,8 @@ from pathlib import Path
 
 FOLDER_VARIABLE = "RIGCTL_BENCH_DIR"
 PREFIX = "bench:"
+READY_NAME = "bench.json"
+"""There while a bench runs (and after one was killed): its own description."""
 
 
 def bench_folder() -> Path:

@@ -156,7 +156,7 @@ class Ventilator(Device, Protocol):
 
     @property
     def commanded_m3_h(self) -> float:
-        """Air flow in force: what was set, or what the device blows by itself until then and without a lease."""
+        """Air flow in force: what was set, or what the device blows by itself while nobody commands it."""
         ...
 
     def set_flow(self, flow_m3_h: float) -> None:

@@ -29,7 +29,7 @@ import can
 
 from rigctl.config.loading import load_model, translated
 from rigctl.core.errors import ConfigError, DeviceError, RigctlError
-from rigctl.hal.bench_paths import bench_folder
+from rigctl.hal.bench_paths import READY_NAME, bench_folder
 from rigctl.hal.priority import BENCH, raise_priority
 from sim_hardware.bench import pulse
 from sim_hardware.bench.can import BenchCan
@@ -46,7 +46,6 @@ if TYPE_CHECKING:  # the physics load slowly: first the folder and the bus must 
     from sim_hardware.plant.sound import Sound
 
 LOCK_NAME = "bench.lock"
-READY_NAME = "bench.json"
 #: nodes send heartbeats every 100 ms; a bus where ours are heard already belongs to another bench
 LISTEN_S = 0.25
 CHECK_S = 0.25

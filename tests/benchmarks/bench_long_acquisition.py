@@ -30,6 +30,7 @@ from drivers.daq.microphone import to_counts
 from rigctl.app.compose import build_rig, read_rig
 from rigctl.core.channels import MICROPHONE
 from rigctl.hal.devices import RigContext
+from rigctl.hal.priority import CONTROLLER, raise_priority
 from sim_hardware.bench.microphone import Microphone
 from sim_hardware.bench.process import main as bench_main
 
@@ -76,6 +77,7 @@ def measure(rate_hz: int, minutes: float) -> bool:
         sound_path, holes, late = folder / "sound.i16", dict[str, int](), list[float]()
         with build_rig(config, context) as rig, sound_path.open("wb") as sound:
             acquisition: Any = rig.acquisition
+            granted = raise_priority([os.getpid()], CONTROLLER)  # as the controller's process does
             statistics = can_session(context, "main").statistics
             for block in rig.blocks():
                 if block.k == 0:
@@ -98,9 +100,8 @@ def measure(rate_hz: int, minutes: float) -> bool:
         got = np.fromfile(sound_path, np.int16)
         written = to_counts(np.fromfile(folder / WRITTEN, np.float32))
         missing = compare(got, written)
-        print(
-            f"\n{rate_hz} Hz for {lived_s:.1f} s: {blocks} blocks of 50 ms, {cpu:.3f} cores in this process"
-        )
+        print(f"\n{rate_hz} Hz for {lived_s:.1f} s: {blocks} blocks of 50 ms")
+        print(f"  this process: {cpu:.3f} cores, priority {granted}; load average {os.getloadavg()[1]:.1f}")
         print(f"  microphone  {len(got)} frames, {missing}")
         print(f"              the bench could not write {status['lost']}, took back {status['unread']}")
         lost = 0
@@ -109,11 +110,10 @@ def measure(rate_hz: int, minutes: float) -> bool:
                 print(f"  {name:11} clock: drift {state['drift_ppm']} ppm, jitter {state['jitter_ms']} ms")
                 continue
             samples = state["samples"] - before[name]["samples"]
-            lost += state["lost"] + state["doubled"]
-            print(
-                f"  {name:11} {samples} samples ({samples / lived_s:.3f}/s), lost {state['lost']}, doubled "
-                f"{state['doubled']}; drift {state['drift_ppm']} ppm, jitter {state['jitter_ms']} ms"
-            )
+            lost += state["lost"] + state["late"] + state["doubled"]
+            counts = ", ".join(f"{key} {state[key]}" for key in ("lost", "late", "doubled"))
+            print(f"  {name:11} {samples} samples ({samples / lived_s:.3f}/s), {counts}")
+            print(f"              drift {state['drift_ppm']} ppm, jitter {state['jitter_ms']} ms")
         print(f"  invalid samples on the grid of the blocks: {holes or 'none'}")
         print(f"  bus: {received} frames, {statistics.overrun} dropped by the kernel, "
               f"{statistics.malformed} malformed")  # fmt: skip

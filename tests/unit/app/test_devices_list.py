@@ -6,8 +6,10 @@ Packages are really installed for the process under test: a module and a ``.dist
 import builtins
 import json
 import os
+import socket
 import subprocess
 import sys
+import tempfile
 import types
 from collections.abc import Callable
 from pathlib import Path
@@ -234,6 +236,25 @@ def test_ports_of_a_bench_are_named_as_in_rig_files(tmp_path: Path, monkeypatch:
     finally:
         os.close(ours)
         os.close(theirs)
+
+
+def test_the_microphone_of_a_bench_is_listed_while_its_server_lives(monkeypatch: pytest.MonkeyPatch):
+    with tempfile.TemporaryDirectory(prefix="rl-") as name:  # short, for the path of a socket
+        folder = Path(name)
+        monkeypatch.setenv(FOLDER_VARIABLE, name)
+        (folder / "sound").mkdir()
+        (folder / "bench.json").write_text('{"microphone": {"device": "rigmic"}}')
+        assert listing.bench_ports() == []
+        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as server:
+            server.bind(str(folder / "sound" / "native"))
+            server.listen()
+            assert listing.bench_ports() == [
+                listing.BenchPort("bench:rigmic", str(folder / "sound" / "native"))
+            ]
+            (folder / "bench.json").write_text('{"microphone": {}}')
+            assert listing.bench_ports() == []
+        (folder / "bench.json").write_text('{"microphone": {"device": "rigmic"}}')
+        assert listing.bench_ports() == []  # it was killed
 
 
 def test_the_command_prints_every_part():
