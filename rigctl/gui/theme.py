@@ -178,6 +178,8 @@ def style_sheet(t: Theme, scale: float) -> str:
         border: 2px solid {t.blue}; }}
     QLineEdit[wrong="true"], QAbstractSpinBox[wrong="true"], QPlainTextEdit[wrong="true"] {{
         border: 2px solid {t.red}; }}
+    QCheckBox::indicator:unchecked, QListView::indicator:unchecked {{ width: 11px; height: 11px;
+        border: 1px solid {t.muted}; border-radius: 2px; background: {t.field}; }}
     QTableView, QTreeView, QListView {{ background: {t.field}; alternate-background-color: {t.panel};
         border: 1px solid {t.line}; gridline-color: {t.line}; selection-background-color: {t.blue};
         selection-color: {t.on_blue}; }}
