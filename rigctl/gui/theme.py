@@ -9,6 +9,7 @@ its job: layout.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import pyqtgraph as pg
 from PySide6.QtCore import QObject, Signal
@@ -16,6 +17,7 @@ from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QApplication
 
 GRID_PX = 8
+ASSETS = Path(__file__).parent / "assets"
 
 
 @dataclass(frozen=True)
@@ -144,6 +146,10 @@ def _palette(t: Theme) -> QPalette:
     return palette
 
 
+def _asset(name: str, theme: Theme) -> str:
+    return (ASSETS / f"{name}-{theme.name}.svg").as_posix()
+
+
 def style_sheet(t: Theme, scale: float) -> str:
     """The style sheet. Widgets ask for a look by the property "look": see the selectors."""
     u = max(round(GRID_PX * scale), 4)
@@ -174,6 +180,15 @@ def style_sheet(t: Theme, scale: float) -> str:
     QLineEdit, QAbstractSpinBox, QComboBox, QPlainTextEdit, QTextEdit {{ background: {t.field};
         color: {t.text}; border: 1px solid {t.line}; border-radius: 2px; padding: {u // 4}px {u // 2}px;
         min-height: {2 * u + u // 2}px; }}
+    QComboBox::drop-down {{ subcontrol-origin: padding; subcontrol-position: center right; border: none;
+        width: {2 * u + u // 2}px; }}
+    QComboBox::down-arrow {{ image: url("{_asset("arrow-down", t)}"); width: {u + u // 2}px; }}
+    QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ subcontrol-origin: border; border: none;
+        background: transparent; width: {2 * u}px; }}
+    QAbstractSpinBox::up-button {{ subcontrol-position: top right; }}
+    QAbstractSpinBox::down-button {{ subcontrol-position: bottom right; }}
+    QAbstractSpinBox::up-arrow {{ image: url("{_asset("arrow-up", t)}"); width: {u}px; }}
+    QAbstractSpinBox::down-arrow {{ image: url("{_asset("arrow-down", t)}"); width: {u}px; }}
     QLineEdit:focus, QAbstractSpinBox:focus, QComboBox:focus, QPlainTextEdit:focus {{
         border: 2px solid {t.blue}; }}
     QLineEdit[wrong="true"], QAbstractSpinBox[wrong="true"], QPlainTextEdit[wrong="true"] {{

@@ -39,7 +39,7 @@ def with_progress(state: RigState, progress: Progress, left_s: float | None) -> 
     cause = state.cause
     if progress.cause:
         utc = cause.utc if cause is not None else ""
-        cause = SafetyCause(progress.cause, progress.remedy, utc)
+        cause = SafetyCause(_sentence(progress.cause), progress.remedy, utc)
     word = word_of(progress)
     return replace(
         state,
