@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -54,6 +54,10 @@ _OWN_WORDS: dict[str, tuple[str, str]] = {
                       QT_TRANSLATE_NOOP("faults", "Add a sequence, or switch one on.")),
     "missing_name": (QT_TRANSLATE_NOOP("faults", "A name is missing."),
                      QT_TRANSLATE_NOOP("faults", "Use letters, digits, “.”, “_”, “-” or blanks.")),
+    "unsafe_name": (
+        QT_TRANSLATE_NOOP("faults", "{value} cannot be a name."),
+        QT_TRANSLATE_NOOP("faults", "Use letters, digits, “.”, “_”, “-”, blanks; begin with a letter or digit."),
+    ),
     "no_channels": (QT_TRANSLATE_NOOP("faults", "No channel is recorded."),
                     QT_TRANSLATE_NOOP("faults", "Tick at least one.")),
     "soak_exceeds_timeout": (QT_TRANSLATE_NOOP("faults", "A soak of {value} s leaves no time within the time-out of {timeout_s} s."),
@@ -105,6 +109,8 @@ class Fault:
         "error" or "warning".
     cells : tuple of (row, column)
         In lists, the cells that are meant; empty: the list as a whole.
+    note : str
+        How often and where first: too long for the place beside a field.
     """
 
     uid: int
@@ -113,6 +119,7 @@ class Fault:
     remedy: str = ""
     severity: str = "error"
     cells: tuple[tuple[int, int], ...] = ()
+    note: str = ""
 
     @property
     def text(self) -> str:
@@ -137,7 +144,7 @@ def judge(form: SequenceForm) -> Judged:
 
 
 def _with_uid(fault: Fault, uid: int) -> Fault:
-    return Fault(uid, fault.place, fault.words, fault.remedy, fault.severity, fault.cells)
+    return replace(fault, uid=uid)
 
 
 @lru_cache(maxsize=256)
@@ -251,7 +258,7 @@ def _merged(faults: tuple[Fault, ...]) -> tuple[Fault, ...]:
         key = (fault.place, fault.text)
         before = merged.get(key)
         cells = (before.cells if before else ()) + fault.cells
-        merged[key] = Fault(fault.uid, fault.place, fault.words, fault.remedy, fault.severity, cells)
+        merged[key] = replace(fault, cells=cells)
     return tuple(merged.values())
 
 
@@ -271,14 +278,12 @@ def rig_faults(result: CheckResult, form: ProgramForm) -> tuple[Fault, ...]:
 def _rig_fault(problem: Problem, form: SequenceForm) -> Fault:
     words = f"{problem.value} {problem.problem}"
     if problem.count > 1:
-        words += " " + _tr("({0} brakings, the first is number {1})").format(
-            problem.count, problem.first_index
-        )
+        note = _tr("{0} brakings, the first is number {1}.").format(problem.count, problem.first_index)
     else:
-        words += " " + _tr("(braking {0})").format(problem.first_index)
+        note = _tr("Braking {0}.").format(problem.first_index)
     return Fault(
         form.uid, _rig_place(problem.key), _plain(words), _plain(problem.remedy), problem.severity,
-        _rig_cells(problem, form),
+        _rig_cells(problem, form), note,
     )  # fmt: skip
 
 

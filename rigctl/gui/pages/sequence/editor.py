@@ -52,6 +52,8 @@ class _Head(QWidget):
         self.repeat.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.role = QComboBox()
         self.role.setToolTip(self.tr("What the brakings are for; the evaluation looks at it"))
+        self.role.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.role.setMinimumContentsLength(8)
         for role in ROLES:
             self.role.addItem(name_of(role), role)
         self.enabled = QCheckBox(self.tr("run it"))
@@ -89,7 +91,7 @@ class _Head(QWidget):
     def _restyle(self) -> None:
         self._grid.setHorizontalSpacing(self._theme.px(1.5))
         self._grid.setVerticalSpacing(self._theme.px(0.25))
-        self.repeat.setFixedWidth(self._theme.px(8))
+        self.repeat.setFixedWidth(self._theme.px(7))
 
     def show_faults(self, faults: Faults) -> None:
         """Below the line, in words."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from rigctl.gui.pages.sequence.program_file import ShippedProgram
@@ -73,6 +74,11 @@ class EmptyState(QScrollArea):
         self._programs.setVerticalSpacing(unit)
         self.title.setFont(self._theme.font("large"))
         self.words.setMaximumWidth(90 * unit)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Fonts once more: polishing within the scroll area takes the large one away."""
+        super().showEvent(event)
+        self._restyle()
 
     def show_programs(self, shipped: tuple[ShippedProgram, ...], recent: tuple[Path, ...]) -> None:
         """Offer programs."""

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtWidgets import QWidget
 
 from rigctl.gui.pages.sequence.draft import ProgramDraft
 from rigctl.gui.pages.sequence.program_file import (
@@ -21,6 +21,7 @@ from rigctl.gui.pages.sequence.program_file import (
     text_on_disk,
 )
 from rigctl.gui.services import Services
+from rigctl.gui.widgets.file_asking import ask_open, ask_save
 from rigctl.gui.widgets.notice import Notice
 
 MOST_RECENT = 6
@@ -43,7 +44,6 @@ class ProgramFiles(QObject):
         self._draft = draft
         self._notice = notice
         self._page = page
-        self._dialog: QFileDialog | None = None
         self.path: Path | None = None
         self.text = ""
 
@@ -85,10 +85,7 @@ class ProgramFiles(QObject):
     def ask_open(self) -> None:
         """Choose a file; the dialog blocks nothing."""
         folder = self.path.parent if self.path is not None else self._services.config_folder / "programs"
-        dialog = self._make_dialog(self.tr("Open a program"), folder)
-        dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
-        dialog.fileSelected.connect(lambda name: self.open(Path(name)))
-        dialog.show()
+        ask_open(self._page, self.tr("Open a program"), folder, self.tr("Programs (*.toml)"), self.open)
 
     def open(self, path: Path) -> None:
         """Open a file, unless something would be lost."""
@@ -146,12 +143,11 @@ class ProgramFiles(QObject):
         if self.path is not None:
             folder = self.path.parent
         folder.mkdir(parents=True, exist_ok=True)
-        dialog = self._make_dialog(self.tr("Save the program"), folder)
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix("toml")
-        dialog.selectFile(self._draft.form.name.strip().replace(" ", "_") + ".toml")
-        dialog.fileSelected.connect(lambda name: self._write(Path(name), then))
-        dialog.show()
+        start = folder / (self._draft.form.name.strip().replace(" ", "_") + ".toml")
+        ask_save(
+            self._page, self.tr("Save the program"), start, self.tr("Programs (*.toml)"),
+            lambda path: self._write(path, then),
+        )  # fmt: skip
 
     def save_as(self, path: Path, then: Then = None) -> None:
         """To a file of that name."""
@@ -184,22 +180,6 @@ class ProgramFiles(QObject):
         )  # fmt: skip
 
     # -- small things -----------------------------------------------------------------------------
-
-    def _make_dialog(self, title: str, folder: Path) -> QFileDialog:
-        if self._dialog is not None:
-            self._dialog.close()
-        dialog = QFileDialog(self._page, title, str(folder), self.tr("Programs (*.toml)"))
-        dialog.setObjectName("program-file-dialog")
-        dialog.setOption(QFileDialog.Option.DontUseNativeDialog)
-        dialog.setModal(False)
-        dialog.finished.connect(self._on_dialog_finished)
-        self._dialog = dialog
-        return dialog
-
-    def _on_dialog_finished(self) -> None:
-        if self._dialog is not None:
-            self._dialog.deleteLater()
-            self._dialog = None
 
     def _say(self, words: str, why: str) -> None:
         self._notice.ask(f"{words} {why}".strip(), [(self.tr("Close"), None)])

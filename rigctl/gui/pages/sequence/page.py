@@ -100,7 +100,7 @@ class SequencePage(Page):
         area.setFrameShape(QScrollArea.Shape.NoFrame)
         area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        area.setMinimumWidth(theme.px(28))
+        area.setMinimumWidth(theme.px(26))
         area.setWidget(inner)
         column.addWidget(area, 1)
         column.addWidget(self.start)
@@ -437,7 +437,9 @@ class SequencePage(Page):
         if result is not None:
             self.forecaster.ask(None, None)
             self.figures.show_check(result.check, self._disk_left())
-            self.preview.setCourse(result.courses.get(form.name.strip()) if form is not None else None)
+            course = result.courses.get(form.name.strip()) if form is not None else None
+            off = form is not None and not form.enabled
+            self.preview.setCourse(course, self.tr("No course: the sequence is off") if off else "")
         elif program is None:
             self.forecaster.ask(None, None)
             self.figures.show_nothing(self.tr("First put right what is marked."))

@@ -5,6 +5,7 @@ Job: three plots with one time axis, read-out, zoom, copy and save. Not its job:
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QApplication,
     QComboBox,
-    QFileDialog,
     QHBoxLayout,
     QLabel,
     QMenu,
@@ -27,6 +27,7 @@ from PySide6.QtWidgets import (
 from rigctl.gui.format import number_text, time_text
 from rigctl.gui.pages.sequence.forecast import Course
 from rigctl.gui.theme import ThemeKeeper
+from rigctl.gui.widgets.file_asking import ask_save
 
 SHOWN = (3, 10, 60)
 _TRACES = ("temperature", "speed", "pressure")
@@ -42,6 +43,7 @@ class CoursePlots(QWidget):
         self._manual = False
         self.title = QLabel()
         self.title.setProperty("look", "title")
+        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.shown = QComboBox()
         self.shown.setObjectName("preview-shown")
         for count in SHOWN:
@@ -144,15 +146,15 @@ class CoursePlots(QWidget):
         """The course that is drawn."""
         return self._course
 
-    def setCourse(self, course: Course | None) -> None:
-        """Draw a course; a range chosen by hand stays."""
+    def setCourse(self, course: Course | None, why_none: str = "") -> None:
+        """Draw a course; a range chosen by hand stays. None: nothing, and why."""
         self._course = course
         self.readout.setText(" ")
         self.whole.setVisible(self._manual)
         if course is None:
             for curve in (*self.curves.values(), self.braking):
                 curve.setData([], [])
-            self.title.setText(self.tr("Course"))
+            self.title.setText(why_none or self.tr("Course"))
             return
         minutes = course.t_s / 60.0
         data = {
@@ -242,9 +244,7 @@ class CoursePlots(QWidget):
         QApplication.clipboard().setPixmap(self.view.grab())
 
     def _ask_picture_file(self) -> None:
-        dialog = QFileDialog(self, self.tr("Save the picture"), "", self.tr("Picture (*.png)"))
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix("png")
-        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        dialog.fileSelected.connect(lambda path: self.view.grab().save(path))
-        dialog.show()
+        ask_save(
+            self, self.tr("Save the picture"), Path("course.png"), self.tr("Picture (*.png)"),
+            lambda path: self.view.grab().save(str(path)),
+        )  # fmt: skip

@@ -33,7 +33,7 @@ def why_not(
         names = {sequence.uid: sequence.name.strip() for sequence in draft.form.sequences}
         parts = (names.get(errors[0].uid, ""), place_name(errors[0].place))
         where = ", ".join(part for part in parts if part)
-        first = (f"{where}: " if where else "") + errors[0].text
+        first = (f"{where}: " if where else "") + errors[0].words
         if len(errors) == 1:
             return QCoreApplication.translate("sequence", "Cannot be started: {0}").format(first)
         text = QCoreApplication.translate("sequence", "Cannot be started, {0} errors. First: {1}")

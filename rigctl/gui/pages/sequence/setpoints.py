@@ -77,6 +77,7 @@ class ListColumn(QWidget):
         self._column.setSpacing(self._theme.px(0.5))
         self.holds.setFont(self._theme.font("small"))
         self.limits.setFont(self._theme.font("small"))
+        self.setMinimumWidth(self._theme.px(26 if self._speeds else 13))
 
     def value(self) -> tuple[Row, ...]:
         """Rows of the sheet."""

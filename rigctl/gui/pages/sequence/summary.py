@@ -143,13 +143,14 @@ class Figures(QWidget):
     def show_nothing(self, why: str) -> None:
         """Nothing can be estimated."""
         self.duration.setText(why)
-        self.parts.setText("")
-        self.data.setText("")
-        self.bar.setValue(())
+        for widget in (self.bar, self.parts, self.data):
+            widget.hide()
 
     def show_check(self, check: CheckResult, disk_left: int | None) -> None:
         """Estimated duration and volume."""
         e = check.estimate
+        for widget in (self.bar, self.parts, self.data):
+            widget.show()
         conditioning, other = e.heating_s + e.cooling_s, e.soaking_s + e.other_s
         self.duration.setText(self.tr("about {0}").format(long_time_text(e.total_s)))
         self.parts.setText(
@@ -196,7 +197,8 @@ class FaultList(QWidget):
     def _restyle(self) -> None:
         self._column.setSpacing(self._theme.px(0.5))
         self.list.setFont(self._theme.font("small"))
-        self.list.setFixedHeight(self._theme.px(15))
+        self.list.setMinimumHeight(self._theme.px(8))
+        self.list.setMaximumHeight(self._theme.px(15))
 
     def show_faults(self, faults: list[Fault], form: ProgramForm) -> None:
         """Errors first."""
@@ -215,6 +217,7 @@ class FaultList(QWidget):
             mark = "✕ " if fault.severity == "error" else "▲ "
             where = ", ".join(part for part in (names.get(fault.uid, ""), place_name(fault.place)) if part)
             item = QListWidgetItem(mark + (f"{where}: " if where else "") + fault.text)
+            item.setToolTip(f"{fault.note}\n".lstrip() + self.tr("Click: go to the field"))
             item.setData(Qt.ItemDataRole.UserRole, (fault.uid, fault.place))
             if fault.severity == "error":
                 item.setForeground(self._theme.colour("red"))
