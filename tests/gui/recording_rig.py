@@ -1,5 +1,6 @@
 """A rig connection that moves nothing: it keeps what was asked, and the test says what comes back."""
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -7,11 +8,13 @@ from typing import Any
 
 from rigctl.config.loading import load_model
 from rigctl.config.rig import RigConfig
+from rigctl.core.journal import Record
 from rigctl.gui.rig.connection import RigConnection
 from rigctl.gui.rig.state import Readings, RigState, Word
 
 ROOT = Path(__file__).resolve().parents[2]
 RIGS = ROOT / "configs" / "rigs"
+_NUMBERS = itertools.count()
 
 MANUAL = RigState(
     word=Word.READY, mode="manual", rig_name="A", simulated=True, time="real", phase="by hand",
@@ -33,6 +36,12 @@ def session(rig: RigConfig | None = None, **more: Any) -> SimpleNamespace:
         "run_dir": Path("/nonexistent"), "program": None, "simulated": True,
     }  # fmt: skip
     return SimpleNamespace(**{**facts, **more})
+
+
+def record(kind: str, source: str = "controller", **payload: Any) -> Record:
+    """A record of a journal."""
+    number = next(_NUMBERS)
+    return Record("2026-11-30T09:00:00.000+00:00", number, 1.0, source, 1, number, kind, payload, "", "")
 
 
 class RecordingRig(RigConnection):
@@ -62,6 +71,6 @@ def _keep(name: str):
 
 for _name in (
     "start_manual", "start_program", "resume", "stop", "verb", "take_command", "enable", "disable", "set_speed",
-    "set_pressure", "set_ventilator", "condition", "record", "reset", "note", "rate",
+    "set_pressure", "set_ventilator", "condition", "record", "reset", "note", "rate", "end_session",
 ):  # fmt: skip
     setattr(RecordingRig, _name, _keep(_name))

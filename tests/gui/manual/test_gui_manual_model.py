@@ -33,7 +33,7 @@ def allowed(model):
 
 MOVES = {
     Action.SPEED, Action.PRESSURE, Action.RELEASE, Action.VENTILATOR, Action.CONDITION, Action.STOP_MOTOR,
-    Action.RECORD, Action.DISABLE, Action.RATE,
+    Action.RECORD, Action.DISABLE, Action.RATE, Action.END,
 }  # fmt: skip
 
 
@@ -61,7 +61,7 @@ def test_enabled_everything_moves(model):
 
 def test_locked_only_enabling(model):
     model.show(LOCKED)
-    assert allowed(model) == {Action.ENABLE, Action.RATE}
+    assert allowed(model) == {Action.ENABLE, Action.RATE, Action.END}
     assert "Enable first" in model.may(Action.SPEED).reason
     assert model.notice().title.startswith("Locked") and "Press Enable" in model.notice().text
 
@@ -76,20 +76,45 @@ def test_watching_only_taking_command(model):
 def test_tripped_only_reset_and_it_says_why(model):
     cause = SafetyCause("Pressure did not fall within 1 s.", "Check the vent valve, then reset.")
     model.show(replace(LOCKED, word=Word.TRIPPED, cause=cause))
-    assert allowed(model) == {Action.RESET, Action.RATE}
+    assert allowed(model) == {Action.RESET, Action.RATE, Action.END}
     notice = model.notice()
     assert notice.look == "alarm"
     assert "did not fall" in notice.title and "vent valve" in notice.text
 
 
+@pytest.mark.parametrize("mode", ["manual", "program"])
+def test_after_the_controller_has_gone_only_a_word_is_wanted(model, mode):
+    gone = SafetyCause("The controller process has gone.", "The watchdog brings the rig to the safe state.")
+    lost = replace(LOCKED, word=Word.TRIPPED, mode=mode, cause=gone, commander="", commanding=False)
+    model.show(lost)
+    assert model.scene is Scene.MANUAL and allowed(model) == {Action.RESET}
+    assert "has gone" in model.notice().title
+
+
+def test_a_braking_that_is_being_prepared_is_not_ordered_twice(model):
+    model.ordered(12.0)
+    assert not model.may(Action.RECORD).allowed
+    model.show(MANUAL)  # news from before the order was taken
+    assert not model.may(Action.RECORD).allowed
+    model.show(replace(MANUAL, phase="spinning up to 100 1/min"))
+    assert not model.may(Action.RECORD).allowed
+    model.show(MANUAL)  # given up without a recording
+    assert model.may(Action.RECORD).allowed
+    model.ordered(12.0)
+    model.refused()
+    assert model.may(Action.RECORD).allowed
+
+
 def test_stopping_waits(model):
     model.show(replace(MANUAL, word=Word.STOPPING))
-    assert allowed(model) == {Action.RATE}
+    assert allowed(model) == {Action.RATE, Action.END}
 
 
 def test_recording_leaves_the_ways_out(model):
     model.show(replace(MANUAL, recording=True))
-    assert allowed(model) == {Action.RELEASE, Action.STOP_MOTOR, Action.DISABLE, Action.RATE}
+    assert allowed(model) == {
+        Action.RELEASE, Action.STOP_MOTOR, Action.DISABLE, Action.RATE, Action.END,
+    }  # fmt: skip
     assert "being recorded" in model.may(Action.SPEED).reason
 
 

@@ -84,7 +84,7 @@ def test_a_broken_rig_file_says_what_is_wrong(page, services, rig, qtbot, tmp_pa
     (folder / "bad.toml").write_text("name = 1", encoding="utf-8")
     services.config_folder = folder.parent
     page.activated()
-    qtbot.waitUntil(lambda: page.panel.error.isVisible())
+    qtbot.waitUntil(page.panel.error.isVisible)
     assert "bad.toml" in page.panel.error.text()
     assert not find(page, "connect").isEnabled()
 
@@ -301,6 +301,34 @@ def test_a_trip_names_cause_and_remedy_and_wants_a_reason(manual, rig, qtbot):
     assert rig.asked == [("reset", ("valve opened",), {})]
     rig.say(LOCKED)
     assert find(manual, "enable").isVisible() and not find(manual, "reset").isVisible()
+
+
+def test_ending_the_session(manual, rig, qtbot):
+    click(manual, qtbot, "end-session")
+    assert rig.asked == [("end_session", (), {})]
+
+
+def test_live_plots_are_shown_beside_the_controls_and_keep_their_layout(real_plots, manual, services):
+    view = manual.live.view
+    assert view is not None and view.isVisible()
+    view.tools.span.setCurrentIndex(0)
+    span_s = view.time.span_s
+    manual.save_layout(services.settings)
+    view.tools.span.setCurrentIndex(view.tools.span.count() - 1)
+    manual.restore_layout(services.settings)
+    assert view.time.span_s == span_s
+
+
+def test_live_plots_run_only_while_the_console_is_shown(manual, rig):
+    assert manual.live.running
+    manual.deactivated()
+    assert not manual.live.running
+    rig.say(MANUAL)
+    assert not manual.live.running
+    manual.activated()
+    assert manual.live.running
+    rig.say(replace(MANUAL, word=Word.OFFLINE, mode=""))
+    assert not manual.live.running
 
 
 def test_a_running_program_makes_the_page_read_only(manual, rig, services, qtbot):

@@ -21,6 +21,7 @@ from rigctl.gui.widgets.moving_bar import BarScale
 translate = QCoreApplication.translate
 
 TOLERANCE = 1.01  # noise of a reading at the limit is no warning
+IDLE_PHASES = ("by hand", "ready", "locked")  # words of the engine while no task is under way
 HOT_SHARE = 0.9  # of the highest disc temperature: warn before the watchdog stops the rig
 
 
@@ -45,6 +46,7 @@ class Action(StrEnum):
     CONDITION = "condition"
     STOP_MOTOR = "stop motor"
     RECORD = "record"
+    END = "end"
     RATE = "rate"
     RESET = "reset"
     TAKE_COMMAND = "take command"
@@ -89,6 +91,7 @@ class ManualModel:
         self.limits: WatchdogLimits | None = None
         self._asked = False
         self._ordered_s: float | None = None
+        self._preparing = self._seen_busy = False
         self._recording_since: float | None = None
 
     # -- news -------------------------------------------------------------------------------------
@@ -99,6 +102,7 @@ class ManualModel:
         self.limits = None
         self._asked = False
         self._ordered_s = self._recording_since = None
+        self._preparing = False
 
     def show(self, state: RigState) -> None:
         """The newest state."""
@@ -106,7 +110,14 @@ class ManualModel:
             self._recording_since = state.rig_s
         elif not state.recording and self.state.recording:
             self._recording_since = self._ordered_s = None
+        self._seen_busy = self._preparing and (self._seen_busy or state.phase not in IDLE_PHASES)
+        if state.recording or (self._seen_busy and state.phase in IDLE_PHASES):
+            self._preparing = False
         self.state = state
+
+    def refused(self) -> None:
+        """The controller has refused what was asked last."""
+        self._preparing = False
 
     # -- what is shown ----------------------------------------------------------------------------
 
@@ -116,11 +127,18 @@ class ManualModel:
         state = self.state
         if state.word is Word.STARTING:
             return Scene.STARTING
+        if self.abandoned:
+            return Scene.MANUAL
         if state.mode == "program" and state.word is not Word.OFFLINE:
             return Scene.PROGRAM
         if state.mode == "manual" and state.word is not Word.OFFLINE:
             return Scene.MANUAL
         return Scene.NO_SESSION
+
+    @property
+    def abandoned(self) -> bool:
+        """Tripped, and no controller is left: only a person's word is wanted, whatever ran before."""
+        return self.state.word is Word.TRIPPED and not self.state.commander
 
     @property
     def live_energy(self) -> bool:
@@ -195,13 +213,15 @@ class ManualModel:
         """Reasons against an action, the weightiest first, each with whether it holds."""
         state, word = self.state, self.state.word
         taking = action is Action.TAKE_COMMAND
-        moves = action not in (Action.TAKE_COMMAND, Action.RESET, Action.RATE)
+        moves = action not in (Action.TAKE_COMMAND, Action.RESET, Action.RATE, Action.END)
         enabling = action is Action.ENABLE
         return [
             (self.scene is not Scene.MANUAL, translate("manual", "There is no manual session.")),
+            (action is Action.END and self.abandoned, translate("manual", "No controller is left.")),
+            (taking and self.abandoned, translate("manual", "No controller is left.")),
             (taking and state.commanding, translate("manual", "This window commands already.")),
             (
-                not taking and not state.commanding,
+                not taking and not state.commanding and not (action is Action.RESET and self.abandoned),
                 translate("manual", "This window only watches. Take command first."),
             ),
             (
@@ -220,6 +240,10 @@ class ManualModel:
             (
                 moves and not enabling and not self.live_energy,
                 translate("manual", "Nothing can move. Enable first."),
+            ),
+            (
+                action is Action.RECORD and self._preparing,
+                translate("manual", "A braking is being prepared."),
             ),
             (
                 action in MOVING and state.recording,
@@ -269,6 +293,7 @@ class ManualModel:
     def ordered(self, duration_s: float) -> None:
         """A recording of that duration has been asked for from this window."""
         self._ordered_s = duration_s
+        self._preparing, self._seen_busy = True, False
 
     def recording_progress(self) -> tuple[float, float | None] | None:
         """(s since the recording began, s left or None when unknown); None while nothing is recorded."""

@@ -46,6 +46,7 @@ class ManualPage(Page):
         super().__init__(services)
         theme = services.theme
         self.model = ManualModel()
+        self._active = False
         ranges = common_ranges()
         self.panel = ConnectPanel(theme)
         self.readouts = Readouts(theme, self.model.scales())
@@ -146,6 +147,7 @@ class ManualPage(Page):
         safety.disableAsked.connect(rig.disable)
         safety.takeCommandAsked.connect(rig.take_command)
         safety.resetGiven.connect(rig.reset)
+        safety.endAsked.connect(rig.end_session)
         motor.ordered.connect(rig.set_speed)
         motor.stopAsked.connect(self._stop_motor)
         brake.ordered.connect(self._apply)
@@ -166,11 +168,12 @@ class ManualPage(Page):
         """Read the rigs anew; live plots run."""
         folder = self.services.config_folder / "rigs"
         self.services.work.in_thread(list_rigs, folder, done=self._on_rigs, failed=self.panel.setError)
+        self._active = True
         self._show_scene()
-        self.live.start()
 
     def deactivated(self) -> None:
         """Live plots rest."""
+        self._active = False
         self.live.stop()
 
     def save_layout(self, settings: QSettings) -> None:
@@ -228,6 +231,7 @@ class ManualPage(Page):
         self.panel.setNews(why)
 
     def _on_refused(self, why: str) -> None:
+        self.model.refused()
         if self.panel.busy and self.model.scene is not Scene.MANUAL:
             self.panel.setBusy(False)
             self.panel.setError(why)
@@ -243,11 +247,16 @@ class ManualPage(Page):
     def _show_scene(self) -> None:
         state, scene = self.model.state, self.model.scene
         self.panel.setBusy(scene is Scene.STARTING or (self.panel.busy and state.word is Word.OFFLINE))
+        if scene is Scene.STARTING:
+            self.panel.setNews(state.phase)
         console = scene in (Scene.MANUAL, Scene.PROGRAM)
         self.scenes.setCurrentWidget(self._console if console else self.panel)
         if not console:
             self._release_key.setEnabled(False)
+            self.live.stop()
             return
+        if self._active:
+            self.live.start()
         self.readouts.show_state(state)
         self.middle.setCurrentIndex(0 if scene is Scene.MANUAL else 1)
         self.record.setVisible(scene is Scene.MANUAL)

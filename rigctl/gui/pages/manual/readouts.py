@@ -51,8 +51,8 @@ class Readouts(QWidget):
         for column, (label, value, name, unit, tip) in enumerate((
             (self.tr("Friction mu"), self.mu, "value-mu", "",
              self.tr("Momentary coefficient of friction, from torque and pressure")),
-            (self.tr("Sound level"), self.level, "value-level", "dB",
-             self.tr("Sound pressure level of the microphone, dB re 20 µPa")),
+            (self.tr("Sound level"), self.level, "value-level", "dB(A)",
+             self.tr("Sound level of the microphone, A-weighted, fast, dB re 20 µPa")),
         )):  # fmt: skip
             title = QLabel(label)
             title.setProperty("look", "muted")
@@ -103,7 +103,7 @@ class Readouts(QWidget):
         size = self._theme.font("normal").pointSizeF()
         self.level.setText(
             f'{number_text(level_db, 1)} <span style="color:{muted}; font-size:{size:.1f}pt;'
-            f' font-weight:normal">dB</span>'
+            f' font-weight:normal">dB(A)</span>'
         )
 
     def clear(self) -> None:

@@ -21,6 +21,7 @@ class SafetyBox(QWidget):
     disableAsked = Signal()
     takeCommandAsked = Signal()
     resetGiven = Signal(str)
+    endAsked = Signal()
 
     def __init__(self, theme: ThemeKeeper, model: ManualModel) -> None:
         super().__init__()
@@ -44,11 +45,14 @@ class SafetyBox(QWidget):
         self.disable.setToolTip(
             self.tr("Releases the pressure, brings the disc to rest, opens the safety relay")
         )
+        self.end = self._button("end-session", self.tr("End session"))
+        self.end.setToolTip(self.tr("Comes to rest, locks, and ends the controller of this session"))
         self.confirm = InlineConfirm(theme, "enable-confirm", self.tr("Enable &now"))
         self.confirm.yes.setToolTip(self.tr("The watchdog closes the safety relay"))
         self._build()
         self.take.clicked.connect(self.takeCommandAsked)
         self.disable.clicked.connect(self.disableAsked)
+        self.end.clicked.connect(self.endAsked)
         self.reset.clicked.connect(self._ask_reason)
         self.reason.given.connect(self.resetGiven)
         self.reason.cancelled.connect(self._arrange)
@@ -70,6 +74,7 @@ class SafetyBox(QWidget):
         for button in (self.enable, self.disable, self.take, self.reset):
             self._row.addWidget(button)
         self._row.addStretch(1)
+        self._row.addWidget(self.end)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         for widget in (self.title, self.text):
@@ -94,6 +99,7 @@ class SafetyBox(QWidget):
             (self.disable, Action.DISABLE),
             (self.take, Action.TAKE_COMMAND),
             (self.reset, Action.RESET),
+            (self.end, Action.END),
         ):
             button.setEnabled(self._model.may(action).allowed)
         why = self._model.may(Action.ENABLE).reason
@@ -119,7 +125,8 @@ class SafetyBox(QWidget):
         asking = not self.confirm.isHidden() or not self.reason.isHidden()
         tripped = self._model.may(Action.RESET).allowed
         commanding = self._model.state.commanding
-        self.take.setVisible(not commanding and not asking)
+        self.take.setVisible(self._model.may(Action.TAKE_COMMAND).allowed and not asking)
+        self.end.setVisible(self._model.may(Action.END).allowed and not asking)
         self.reset.setVisible(tripped and not asking)
         self.enable.setVisible(commanding and not tripped and not asking and not self._model.live_energy)
         self.disable.setVisible(commanding and not tripped and not asking and self._model.live_energy)
