@@ -6,6 +6,9 @@
 #   make figures the figures of the paper from our model, its numbers beside ours: figures/figures.html
 #   make lock    resolve the dependencies again (after a change in pyproject.toml)
 
+# The tests start hundreds of short processes; without bytecode each of them would compile our sources again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DELETE_ON_ERROR:
 .PHONY: help run gui figures test system lint types lock clean
 
