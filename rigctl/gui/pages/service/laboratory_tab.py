@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QSignalBlocker, QTimer
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -114,6 +114,7 @@ class LaboratoryTab(QWidget):
         )
         self.news = label(wrap=True)
         self.news.setObjectName("lab-news")
+        self.news.hide()
         column = QVBoxLayout()
         column.setSpacing(self._theme.px(1))
         top = QHBoxLayout()
@@ -149,11 +150,11 @@ class LaboratoryTab(QWidget):
     # -- build -----------------------------------------------------------------------------------
 
     def _chain(self) -> QWidget:
-        self.estop = QPushButton(self.tr("Press the &emergency stop"))
+        self.estop = QPushButton()
         self.estop.setObjectName("lab-estop")
-        self.doors = QPushButton(self.tr("Open the &doors"))
+        self.doors = QPushButton()
         self.doors.setObjectName("lab-doors")
-        self.vent = QPushButton(self.tr("Let the &vent valve stick"))
+        self.vent = QPushButton()
         self.vent.setObjectName("lab-vent")
         for button, do, field, tip in (
             (self.estop, "estop", "pressed", self.tr("Hard-wired: torque off and pressure vented at once")),
@@ -162,7 +163,7 @@ class LaboratoryTab(QWidget):
         ):
             button.setCheckable(True)
             button.setToolTip(tip)
-            button.clicked.connect(partial(self._on_switch, do, field))
+            button.toggled.connect(lambda on, do=do, field=field: self._on_switch(do, field, on))
         panel = Panel(self._theme, self.tr("Safety chain and valves"))
         for button in (self.estop, self.doors, self.vent):
             panel.body.addWidget(button)
@@ -278,7 +279,7 @@ class LaboratoryTab(QWidget):
     def ask(self, do: str, **fields: Any) -> None:
         """Give a stimulus."""
         if self.client is not None:
-            self.news.setText("")
+            self.news.hide()
             self.client.ask(do, **fields)
 
     def _on_look(self) -> None:
@@ -296,6 +297,7 @@ class LaboratoryTab(QWidget):
     def _on_refused(self, why: str) -> None:
         set_look(self.news, "error")
         self.news.setText("▲ " + why.removeprefix("fault laboratory: "))
+        self.news.show()
         self._show(self._last)
 
     def _show(self, answer: dict[str, Any]) -> None:
@@ -305,22 +307,12 @@ class LaboratoryTab(QWidget):
         for widget in (self.estop, self.doors, self.vent, self.clear, self.calibrator, self.disc, self.weight,
                        self.drift, *self.sensors.values()):  # fmt: skip
             widget.setEnabled(bool(answer))
-        for button, key in (
-            (self.estop, "estop_pressed"), (self.doors, "doors_open"), (self.vent, "vent_valve_stuck"),
-        ):  # fmt: skip
-            button.setChecked(bool(answer.get(key)))
+        self._show_switches(answer)
         if not answer:
             self.force.setText(self.tr("No simulated rig is connected."))
             self.truth.setText("")
             return
-        if answer["calibrator_db"] != before.get("calibrator_db"):
-            self.calibrator.setCurrentIndex(max(self.calibrator.findData(round(answer["calibrator_db"])), 0))
-        for key, field in (("weight_nm", self.weight), ("drift_db", self.drift)):
-            if answer[key] != before.get(key) and not field.edit.hasFocus():
-                field.setValue(answer[key])
-        for channel, row in self.sensors.items():
-            if answer["sensors"].get(channel) != before.get("sensors", {}).get(channel):
-                row.show_fault(answer["sensors"].get(channel, {}))
+        self._show_inputs(answer, before)
         lines = in_force(answer)
         self.force.setText("\n".join(lines) or self.tr("Nothing is disturbed."))
         truth = answer["truth"]
@@ -330,3 +322,27 @@ class LaboratoryTab(QWidget):
                 number_text(truth["torque_nm"], 1), number_text(truth["disc_degc"], 1),
             )
         )  # fmt: skip
+
+    def _show_switches(self, answer: dict[str, Any]) -> None:
+        stop = (self.tr("Press the &emergency stop"), self.tr("Emergency stop is pressed: r&elease it"))
+        doors = (self.tr("Open the &doors"), self.tr("&Doors are open: close them"))
+        vent = (self.tr("Let the &vent valve stick"), self.tr("&Vent valve sticks: mend it"))
+        for button, key, texts in (
+            (self.estop, "estop_pressed", stop), (self.doors, "doors_open", doors),
+            (self.vent, "vent_valve_stuck", vent),
+        ):  # fmt: skip
+            on = bool(answer.get(key))
+            with QSignalBlocker(button):  # what is told is no order
+                button.setChecked(on)
+            button.setText(texts[on])
+
+    def _show_inputs(self, answer: dict[str, Any], before: dict[str, Any]) -> None:
+        """Inputs follow what others do, and are left alone while nothing changes."""
+        if answer["calibrator_db"] != before.get("calibrator_db"):
+            self.calibrator.setCurrentIndex(max(self.calibrator.findData(round(answer["calibrator_db"])), 0))
+        for key, field in (("weight_nm", self.weight), ("drift_db", self.drift)):
+            if answer[key] != before.get(key) and not field.edit.hasFocus():
+                field.setValue(answer[key])
+        for channel, row in self.sensors.items():
+            if answer["sensors"].get(channel) != before.get("sensors", {}).get(channel):
+                row.show_fault(answer["sensors"].get(channel, {}))
