@@ -19,6 +19,14 @@ def number_text(value: float | None, decimals: int = 1) -> str:
     return text[1:] if text.startswith("-") and not text.strip("-0.") else text
 
 
+def signed_text(value: float | None, decimals: int = 2) -> str:
+    """Fixed decimals with sign; never "-0.00"."""
+    if value is None or not math.isfinite(value):
+        return MISSING
+    text = f"{value:+.{decimals}f}"
+    return text if text.strip("+-0.") else f"{0.0:.{decimals}f}"
+
+
 def quantity_text(value: float | None, unit: str, decimals: int = 1) -> str:
     """Number and unit with a narrow no-break space between."""
     return f"{number_text(value, decimals)}\u202f{unit}"

@@ -202,7 +202,7 @@ def _broken_off(p: dict[str, Any]) -> _Found | None:
     if reason.endswith("by the operator") or reason.startswith("safety trip"):
         return None  # a person knows, or the trip itself is the alarm
     words = f"Braking {p.get('index')} was broken off: {reason}"
-    return _Found("braking_broken_off", WARNING, _sentence(words), "It can be repeated with `Repeat`.")
+    return _Found("braking_broken_off", WARNING, _sentence(words), "It can be repeated on the Run page.")
 
 
 def _recording_failed(p: dict[str, Any]) -> _Found:

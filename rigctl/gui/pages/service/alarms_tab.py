@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from rigctl.gui.format import clock_text
-from rigctl.gui.pages.service.parts import LEFT, RIGHT, label
+from rigctl.gui.pages.service.parts import LEFT, RIGHT, label, pad_cells
 from rigctl.gui.rig.alarm_list import ALARM, Alarm
 from rigctl.gui.services import Services
 from rigctl.gui.theme import ThemeKeeper
@@ -113,23 +113,7 @@ class AlarmsTab(QWidget):
         self._services = services
         self._alarms = services.alarms
         theme = services.theme
-        self.model = AlarmTable(theme)
-        self.table = QTableView()
-        self.table.setObjectName("alarms-table")
-        self.table.setModel(self.model)
-        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.table.setAlternatingRowColors(True)
-        self.table.setShowGrid(False)
-        self.table.setWordWrap(True)
-        self.table.setTabKeyNavigation(False)
-        self.table.verticalHeader().hide()
-        self.table.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header = self.table.horizontalHeader()
-        header.setHighlightSections(False)
-        for column in (0, 1, 2, 5):
-            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
-        for column in (3, 4):
-            header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
+        self._make_table(theme)
         self.acknowledge = QPushButton(self.tr("&Acknowledge the selected"))
         self.acknowledge.setObjectName("alarms-acknowledge")
         self.acknowledge.setToolTip(
@@ -170,6 +154,28 @@ class AlarmsTab(QWidget):
             self.all.clicked.connect(self._alarms.acknowledge_all)
             self._alarms.changed.connect(self._show)
         self._show()
+
+    def _make_table(self, theme: ThemeKeeper) -> None:
+        self.model = AlarmTable(theme)
+        self.table = QTableView()
+        self.table.setObjectName("alarms-table")
+        self.table.setModel(self.model)
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setAlternatingRowColors(True)
+        self.table.setShowGrid(False)
+        self.table.setWordWrap(True)
+        self.table.setTabKeyNavigation(False)
+        self.table.verticalHeader().hide()
+        self.table.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        header = self.table.horizontalHeader()
+        header.setHighlightSections(False)
+        header.setDefaultAlignment(LEFT)
+        for column in (0, 1, 2, 5):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
+        for column in (3, 4):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
+        theme.changed.connect(lambda: pad_cells(self.table, theme))
+        pad_cells(self.table, theme)
 
     def activated(self) -> None:
         """Shown."""

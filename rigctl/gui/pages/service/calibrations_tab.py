@@ -83,9 +83,18 @@ def details_text(kept: Kept) -> str:
     lines = [f"{found.quantity}: {result_text(found)}", f"{_who(found)}; valid until {found.due}"]
     further = (("sensor", found.instrument), ("reference", found.reference), ("note", found.note))
     lines += [f"{name}: {text}" for name, text in further if text]
-    lines += [", ".join(f"{name} {value:.3g}" for name, value in found.figures.items())]
+    lines += [", ".join(figure_text(name, value) for name, value in found.figures.items())]
     lines += [f"{len(found.points)} readings; {kept.path}"]
     return "\n".join(line for line in lines if line)
+
+
+def figure_text(name: str, value: float) -> str:
+    """A named number for people: "residual_percent" is "residual 0.08 %"."""
+    words, _, unit = name.rpartition("_")
+    units = {"percent": "%", "k": "K", "db": "dB", "hz": "Hz"}
+    if unit not in units:
+        return f"{name.replace('_', ' ')} {value:.3g}"
+    return f"{words.replace('_', ' ')} {value:.3g} {units[unit]}"
 
 
 def session_folder(session: Any) -> Path:
@@ -137,6 +146,14 @@ class CalibrationsTab(QWidget):
         self.table.setObjectName("calibrations-table")
         self.table.itemSelectionChanged.connect(self._show_details)
         self.details = label("", "muted", wrap=True)
+        self.empty = label(
+            self.tr(
+                "No calibration has been made here yet. [Calibrate …] leads through it step by step; every "
+                "result is kept with its readings, the newest of each quantity holds."
+            ),
+            "muted",
+            wrap=True,
+        )
         self.faults = label("", "error", wrap=True)
         self.faults.hide()
         widget = QWidget()
@@ -149,6 +166,8 @@ class CalibrationsTab(QWidget):
         column.addWidget(self.faults)
         column.addWidget(self.table, 1)
         column.addWidget(self.details)
+        column.addWidget(self.empty)
+        column.addStretch(0)
         return widget
 
     # -- files -----------------------------------------------------------------------------------
@@ -199,6 +218,9 @@ class CalibrationsTab(QWidget):
                 for k in self._kept
             ]
         )  # fmt: skip
+        self.table.setVisible(bool(self._kept))
+        self.details.setVisible(bool(self._kept))
+        self.empty.setVisible(not self._kept and self._folder is not None)
         self._show_details()
 
     def _show_details(self) -> None:

@@ -95,6 +95,7 @@ class DeviceCard(Panel):
             number = len(self._names)
             pair = (label("", "muted"), label())
             self._names.append(pair)
+            pair[0].setMinimumWidth(self._theme.px(14))
             for place, part in enumerate(pair):
                 self._values.addWidget(part, number // 2, 2 * (number % 2) + place)
         for number, pair in enumerate(self._names):

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from rigctl.calibration.emissivity import Pyrometer
 from rigctl.core.channels import DISC_TEMPERATURE
-from rigctl.gui.format import number_text, quantity_text
+from rigctl.gui.format import number_text, quantity_text, signed_text
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.heat_guide import HeatGuide
 from rigctl.gui.pages.service.parts import FaultList, Form, Panel, PlainTable, label
@@ -33,6 +33,8 @@ from rigctl.gui.widgets.value_field import ValueField
 
 _LOOK_MS = 300
 _LIVE_SAMPLES = 40
+MEASURE_S = 1.0
+"""Shorter than for the torque: the disc cools meanwhile."""
 
 
 class HeatView(Procedure):
@@ -85,9 +87,7 @@ class HeatView(Procedure):
         form.add(self.tr("&Emissivity set"), self.set_value, self.tr("As it is set at the pyrometer now"))
         form.add(self.tr("&Wavelength"), self.wavelength, self.tr("Effective one; 10 µm for 8 to 14 µm"))
         form.add(self.tr("Sur&roundings"), self.ambient, self.tr("Temperature of what the disc reflects"))
-        form.add(
-            self.tr("&Contact thermometer"), self.contact, self.tr("What it shows on the rub track, now")
-        )
+        form.add(self.tr("&Contact reading"), self.contact, self.tr("What it shows on the rub track, now"))
         self.live = label("")
         self.live.setObjectName("heat-live")
         self.live.setFont(self.theme.font("large"))
@@ -101,7 +101,7 @@ class HeatView(Procedure):
         self.take = QPushButton(self.tr("&Take the pair"))
         self.take.setObjectName("heat-take")
         self.take.setProperty("look", "primary")
-        self.take.setToolTip(self.tr("Mean of the pyrometer over 2 s, beside the contact thermometer"))
+        self.take.setToolTip(self.tr("Mean of the pyrometer over 1 s, beside the contact reading"))
         self.take.clicked.connect(self._take)
         panel = Panel(self.theme)
         panel.body.addWidget(
@@ -177,13 +177,13 @@ class HeatView(Procedure):
         self.contact.setValue(round(float(answer["truth"]["disc_degc"]), 1))
 
     def _take(self) -> None:
+        self.contact.setError("")  # shows what is wrong with the number, if anything
         if self.contact.value() is None:
-            self.contact.setError(self.tr("Type what the contact thermometer shows."))
+            self.contact.setFocus()
             return
-        self.contact.setError("")
         self.say("")
         self.take.setEnabled(False)
-        self.sampler.measure((DISC_TEMPERATURE,), self._on_read, self._on_failed)
+        self.sampler.measure((DISC_TEMPERATURE,), self._on_read, self._on_failed, MEASURE_S)
 
     def _on_read(self, readings: dict[str, Reading]) -> None:
         reading, contact = readings[DISC_TEMPERATURE], self.contact.value()
@@ -223,8 +223,8 @@ class HeatView(Procedure):
             after = ""
             if result is not None:
                 left_k = self.guide.pyrometer.true_degc(point.measured, result.emissivity) - point.applied
-                after = f"{left_k:+.1f}\u202fK"
-            difference = f"{point.measured - point.applied:+.1f}\u202fK"
+                after = f"{signed_text(left_k, 1)}\u202fK"
+            difference = f"{signed_text(point.measured - point.applied, 1)}\u202fK"
             pair = (quantity_text(point.applied, "°C"), quantity_text(point.measured, "°C"))
             rows.append((*pair, difference, after))
         self.table.show_rows(rows, frozenset({0, 1, 2, 3}))

@@ -27,7 +27,7 @@ from PySide6.QtWidgets import (
 from rigctl.core.journal import verify_journal
 from rigctl.gui.format import clock_text, number_text
 from rigctl.gui.pages.service.journal_list import Filter, JournalFile, Row, campaigns_of, details_of
-from rigctl.gui.pages.service.parts import LEFT, RIGHT, label, set_look
+from rigctl.gui.pages.service.parts import LEFT, RIGHT, label, pad_cells, set_look
 from rigctl.gui.services import Services
 from rigctl.gui.work import Reporter
 
@@ -201,6 +201,7 @@ class JournalTab(QWidget):
         self.table.setTabKeyNavigation(False)
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setHighlightSections(False)
+        self.table.horizontalHeader().setDefaultAlignment(LEFT)
         self.table.horizontalHeader().setSectionResizeMode(4, QHeaderView.ResizeMode.Stretch)
         self.details = QPlainTextEdit()
         self.details.setReadOnly(True)
@@ -213,6 +214,7 @@ class JournalTab(QWidget):
 
     def _restyle(self) -> None:
         theme = self._services.theme
+        pad_cells(self.table, theme)
         self.table.verticalHeader().setDefaultSectionSize(theme.px(3))
         for column, units in enumerate((11, 12, 12, 22)):
             self.table.setColumnWidth(column, theme.px(units))
@@ -254,9 +256,8 @@ class JournalTab(QWidget):
         self.campaign.clear()
         for folder in folders:
             live = running is not None and folder == running.campaign
-            self.campaign.addItem(
-                self.tr("{0} (running)").format(folder.name) if live else folder.name, folder
-            )
+            name = self.tr("{0} (running)").format(folder.name) if live else folder.name
+            self.campaign.addItem(name, str(folder))
         self.campaign.blockSignals(False)
         self._wanted = None
         if not folders:
@@ -269,10 +270,10 @@ class JournalTab(QWidget):
         self._choose(chosen or folders[0])
 
     def _on_campaign(self, index: int) -> None:
-        self._choose(self.campaign.itemData(index))
+        self._choose(Path(self.campaign.itemData(index)))
 
     def _choose(self, folder: Path) -> None:
-        self.campaign.setCurrentIndex(self.campaign.findData(folder))
+        self.campaign.setCurrentIndex(self.campaign.findData(str(folder)))
         if self._file is None or self._file.path.parent != folder:
             if self._job is not None:
                 self._job.cancel()

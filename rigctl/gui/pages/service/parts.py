@@ -14,7 +14,9 @@ from PySide6.QtWidgets import (
     QFrame,
     QHeaderView,
     QLabel,
+    QProgressBar,
     QSizePolicy,
+    QTableView,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -52,6 +54,28 @@ def label(text: str = "", look: str = "", *, wrap: bool = False) -> QLabel:
         made.setWordWrap(True)
         made.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
     return made
+
+
+def pad_cells(table: QTableView, theme: ThemeKeeper) -> None:
+    """Some room left and right of what stands in a cell."""
+    pad = theme.px(0.75)
+    table.setStyleSheet(
+        f"QTableView::item {{ padding: 0 {pad}px; }} QHeaderView::section {{ padding: {pad}px; }}"
+    )
+
+
+def thin_bar(theme: ThemeKeeper) -> QProgressBar:
+    """A thin bar of progress that keeps its place while it is empty."""
+    bar = QProgressBar()
+    bar.setRange(0, 100)
+    bar.setTextVisible(False)
+
+    def restyle() -> None:
+        bar.setFixedHeight(theme.px(0.75))
+
+    theme.changed.connect(restyle)
+    restyle()
+    return bar
 
 
 class Panel(QFrame):
@@ -97,6 +121,7 @@ class Form(QWidget):
         """One row; "&" in the name makes its key."""
         caption = QLabel(name)
         caption.setBuddy(field)
+        caption.setMinimumWidth(self._theme.px(18))
         if tip:
             caption.setToolTip(tip)
             field.setToolTip(tip)
@@ -162,6 +187,7 @@ class PlainTable(QTableWidget):
         self.verticalHeader().hide()
         header = self.horizontalHeader()
         header.setHighlightSections(False)
+        header.setDefaultAlignment(LEFT)
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         if stretch >= 0:
             header.setSectionResizeMode(stretch, QHeaderView.ResizeMode.Stretch)
@@ -169,6 +195,7 @@ class PlainTable(QTableWidget):
         self._restyle()
 
     def _restyle(self) -> None:
+        pad_cells(self, self._theme)
         self.verticalHeader().setDefaultSectionSize(self._theme.px(3.25))
         for row in range(self.rowCount()):
             self.setRowHeight(row, self._theme.px(3.25))

@@ -24,6 +24,7 @@ MEASURE_S = 2.0
 MIN_SAMPLES = 20
 PATIENCE_S = 12.0
 _LOOK_MS = 100
+_FLOW_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,7 @@ class LiveSampler(QObject):
         self._seconds = 0.0
         self._done: Done | None = None
         self._failed: Failed | None = None
+        self._flow: dict[str, tuple[int, float]] = {}  # written count, and when it changed
 
     @property
     def busy(self) -> bool:
@@ -120,6 +122,16 @@ class LiveSampler(QObject):
             return Reading(spec, ring.read(channel, start, written, timeout_s=0.0))
         except RecordingError:  # overwritten in this moment; the next look has newer ones
             return None
+
+    def flows(self, channel: str) -> bool:
+        """True while new samples come: some within the last second."""
+        ring, now_s = self._attached(), time.monotonic()
+        written = 0 if ring is None or channel not in ring.specs else ring.written(channel)
+        before, since_s = self._flow.get(channel, (0, now_s))
+        if written != before:
+            self._flow[channel] = (written, now_s)
+            return True
+        return written > 0 and now_s - since_s < _FLOW_S
 
     def measure(
         self, channels: Sequence[str], done: Done, failed: Failed, seconds: float = MEASURE_S

@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
     QButtonGroup,
     QCheckBox,
     QHBoxLayout,
-    QProgressBar,
     QPushButton,
     QRadioButton,
     QVBoxLayout,
@@ -23,9 +22,9 @@ from PySide6.QtWidgets import (
 
 from rigctl.core.channels import MICROPHONE
 from rigctl.core.units import REFERENCE_PRESSURE_PA
-from rigctl.gui.format import number_text, quantity_text
+from rigctl.gui.format import number_text, quantity_text, signed_text
 from rigctl.gui.pages.service.form import FactsForm
-from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, label
+from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, label, thin_bar
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import Reading
 from rigctl.gui.pages.service.sound_guide import RECORD_S, SoundGuide, read_and_evaluate
@@ -117,9 +116,7 @@ class SoundView(Procedure):
         self.take.setProperty("look", "primary")
         self.take.setToolTip(self.tr("Record the tone and find the sensitivity; once for each level"))
         self.take.clicked.connect(self._take)
-        self.bar = QProgressBar()
-        self.bar.setRange(0, 100)
-        self.bar.setTextVisible(False)
+        self.bar = thin_bar(self.theme)
         panel = Panel(self.theme)
         panel.body.addWidget(
             label(
@@ -171,6 +168,8 @@ class SoundView(Procedure):
         self.bar.setValue(round(100 * self.sampler.share))
         spec = self.sampler.spec(MICROPHONE)
         reading = None if spec is None else self.sampler.newest(MICROPHONE, round(_LIVE_S * spec.rate_hz))
+        if not self.sampler.flows(MICROPHONE):
+            reading = None
         if reading is None:
             self.live.setText(quantity_text(None, "dB"))
             self.live_note.setText(
@@ -263,11 +262,11 @@ class SoundView(Procedure):
             )
         if result is not None:
             words = self.tr("{0:.5f} mPa per count: {1} dB against the nominal sensitivity").format(
-                1e3 * result.pa_per_count, f"{result.figures['error_db']:+.2f}"
+                1e3 * result.pa_per_count, signed_text(result.figures["error_db"])
             )
             if result.drift_db is not None:
                 words += self.tr("; drift since the last calibration {0} dB").format(
-                    f"{result.drift_db:+.2f}"
+                    signed_text(result.drift_db)
                 )
             if (linearity := result.figures.get("linearity_db")) is not None:
                 words += self.tr("; the levels agree within {0} dB").format(number_text(linearity, 2))

@@ -62,7 +62,7 @@ class TorquePlots(QWidget):
         t = self._theme.current
         x_name = self.tr("torque of the weights (N·m)")
         dress(self.line_plot, self._theme, x_name, self.tr("reading (N·m)"))
-        dress(self.residual_plot, self._theme, x_name, self.tr("residual (% of full scale)"))
+        dress(self.residual_plot, self._theme, x_name, self.tr("residual (% FS)"))
         for plot in (self.line_plot, self.residual_plot):
             plot.clear()
             plot.addItem(pg.InfiniteLine(0.0, 0, pen=pg.mkPen(t.plot_line)))

@@ -13,7 +13,6 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
-    QProgressBar,
     QPushButton,
     QStackedWidget,
     QVBoxLayout,
@@ -21,15 +20,17 @@ from PySide6.QtWidgets import (
 )
 
 from rigctl.core.channels import TORQUE
+from rigctl.core.errors import RigctlError
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.lever_form import LeverForm
-from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, label
+from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, label, thin_bar
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import MEASURE_S, Reading
 from rigctl.gui.pages.service.torque_guide import CHANNELS, TorqueGuide
 from rigctl.gui.pages.service.torque_plots import TorquePlots
 from rigctl.gui.services import Services
+from rigctl.safety.limits import load_limits
 
 SETTLE_MS = 400
 """A simulated weight hangs still at once; the blocks in between are waited for."""
@@ -42,6 +43,7 @@ class TorqueView(Procedure):
         super().__init__(services, session, folder)
         self.headline.setText(self.tr("Torque by lever and weights"))
         self.guide: TorqueGuide | None = None
+        self._watched = watched_range(session)
         self._facts = FactsForm(
             self.theme, services.settings, "torque", self.tr("Lever and weights"), days=365
         )
@@ -77,6 +79,8 @@ class TorqueView(Procedure):
         self.lever = LeverForm(self.theme, self.services.settings)
         self.input_error = label("", "error", wrap=True)
         self.input_error.setObjectName("lever-error")
+        self.trip_note = label("", "muted", wrap=True)
+        self.trip_note.setObjectName("lever-trip-note")
         self.begin = QPushButton(self.tr("&Begin"))
         self.begin.setObjectName("torque-begin")
         self.begin.setProperty("look", "primary")
@@ -97,6 +101,7 @@ class TorqueView(Procedure):
         panel.body.addWidget(teaching)
         panel.body.addWidget(self.lever)
         panel.body.addWidget(self._facts)
+        panel.body.addWidget(self.trip_note)
         panel.body.addWidget(self.input_error)
         panel.body.addStretch(1)
         panel.body.addWidget(self.begin)
@@ -123,9 +128,7 @@ class TorqueView(Procedure):
         self.repeat.setObjectName("torque-repeat")
         self.repeat.setToolTip(self.tr("Take the reading of the selected row again"))
         self.repeat.clicked.connect(self._repeat)
-        self.bar = QProgressBar()
-        self.bar.setRange(0, 100)
-        self.bar.setTextVisible(False)
+        self.bar = thin_bar(self.theme)
         self.table = PlainTable(
             self.theme,
             (self.tr("Side"), self.tr("kg"), self.tr("N·m"), self.tr("Reading"), self.tr("Scatter")),
@@ -171,6 +174,18 @@ class TorqueView(Procedure):
         self.input_error.setText("▲ " + problem if problem else "")
         self.input_error.setVisible(bool(problem))
         self.begin.setEnabled(not problem)
+        lever = self.lever.value()
+        low, high = self._watched
+        largest = 0.0 if lever is None else lever.torque_nm(lever.masses_kg[-1])
+        trips = largest > high or -largest < low
+        self.trip_note.setVisible(trips)
+        if trips:
+            self.trip_note.setText(
+                self.tr(
+                    "△ The watchdog feels the weights too and trips outside {0:g} … {1:g} N·m. Nothing moves "
+                    "by that; reset it when the weights are off."
+                ).format(low, high)
+            )
 
     def _begin(self) -> None:
         lever = self.lever.value()
@@ -261,8 +276,8 @@ class TorqueView(Procedure):
             figures = result.figures
             self.result.setText(
                 self.tr(
-                    "gain {0:.5f}, offset {1:+.2f} N·m; largest residual {2:.2f} %, hysteresis {3:.2f} %, "
-                    "zero {4:.2f} % of full scale"
+                    "gain {0:.5f}, offset {1:+.2f} N·m; largest residual {2:.3f} %, hysteresis {3:.3f} %, "
+                    "zero {4:.3f} % of full scale"
                 ).format(
                     result.gain, result.offset, figures["residual_percent"], figures["hysteresis_percent"],
                     figures["zero_percent"],
@@ -337,3 +352,12 @@ class TorqueView(Procedure):
             self._take()
             return
         super().keyPressEvent(event)
+
+
+def watched_range(session: Any) -> tuple[float, float]:
+    """Torque within which the watchdog does not trip, N·m; everything when its limits cannot be read."""
+    try:
+        limits = load_limits(session.campaign / session.rig.safety.limits).limits
+    except RigctlError:
+        return float("-inf"), float("inf")
+    return limits.torque.min_nm, limits.torque.max_nm
