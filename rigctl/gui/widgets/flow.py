@@ -65,15 +65,28 @@ class FlowLayout(QLayout):
 
     def _arrange(self, rect: QRect, *, move: bool) -> int:
         space = max(self.spacing(), 0)
-        x, y, line = rect.x(), rect.y(), 0
+        y, height = rect.y(), 0
+        for line in self._lines(rect.width(), space):
+            y += height + space if height else 0
+            height = max(item.sizeHint().height() for item in line)
+            x = rect.x()
+            for item in line:
+                size = item.sizeHint()
+                if move:
+                    item.setGeometry(QRect(QPoint(x, y + (height - size.height()) // 2), size))
+                x += size.width() + space
+        return y + height - rect.y()
+
+    def _lines(self, width: int, space: int) -> list[list[QLayoutItem]]:
+        lines: list[list[QLayoutItem]] = []
+        used = 0
         for item in self._items:
             if item.isEmpty():
                 continue
-            size = item.sizeHint()
-            if x + size.width() > rect.right() + 1 and line > 0:
-                x, y, line = rect.x(), y + line + space, 0
-            if move:
-                item.setGeometry(QRect(QPoint(x, y), size))
-            x += size.width() + space
-            line = max(line, size.height())
-        return y + line - rect.y()
+            need = item.sizeHint().width()
+            if not lines or used + space + need > width:
+                lines.append([])
+                used = -space
+            lines[-1].append(item)
+            used += space + need
+        return lines

@@ -26,6 +26,7 @@ from rigctl.gui.pages.data.results import metadata_lines, result_lines
 from rigctl.gui.pages.data.sound_bar import SoundBar, sound_rate_hz
 from rigctl.gui.pages.data.time_rows import ROWS, SPECTROGRAM, TimeRows
 from rigctl.gui.services import Services
+from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.gui.work import Job
 from rigctl.recording.annotations import Annotation
 
@@ -42,7 +43,7 @@ class BrakingPane(QWidget):
         self._stamp: tuple[int, int] | None = None
         self.view: BrakingView | None = None
         theme = services.theme
-        self.title = QLabel()
+        self.title = ElidedLabel()
         self.title.setObjectName("data-braking-title")
         self.title.setProperty("look", "title")
         self.words = QLabel()
@@ -54,7 +55,9 @@ class BrakingPane(QWidget):
         self.rows.titles = self._row_titles()
         self.rows_button = QPushButton(self.tr("&Rows"))
         self.rows_button.setObjectName("data-row-choice")
-        self.rows_button.setToolTip(self.tr("Which rows are shown"))
+        self.rows_button.setToolTip(
+            self.tr("Which rows are shown; where there is little room, the large view shows all")
+        )
         self.switches: dict[str, QAction] = {}
         self._make_row_menu()
         self.sound.add(self.rows_button)
@@ -78,7 +81,7 @@ class BrakingPane(QWidget):
     def _make_row_menu(self) -> None:
         menu = QMenu(self)
         for name in ROWS:
-            switch = menu.addAction(self.rows.titles[name])
+            switch = menu.addAction(self._row_words(name))
             switch.setObjectName(f"data-row-{name}")
             switch.setCheckable(True)
             switch.setChecked(name in self.rows.shown)
@@ -244,17 +247,30 @@ class BrakingPane(QWidget):
     def _say(self, words: str) -> None:
         self.words.setText(words)
 
-    def _row_titles(self) -> dict[str, str]:
+    def _row_titles(self) -> dict[str, tuple[str, str]]:
         return {
-            SPECTROGRAM: self.tr("Spectrogram [kHz], level per line"),
-            MICROPHONE: self.tr("Sound pressure [Pa]"),
-            LEVEL: self.tr("Sound level, Fast [dB]"),
-            PRESSURE: self.tr("Pressure [bar]"),
-            TORQUE: self.tr("Torque [N·m]"),
-            SPEED: self.tr("Speed [1/min]"),
-            DISC_TEMPERATURE: self.tr("Disc temperature [°C]"),
-            MU: self.tr("Coefficient of friction µ"),
+            SPECTROGRAM: (self.tr("Frequency"), "kHz"),
+            MICROPHONE: (self.tr("Sound"), "Pa"),
+            LEVEL: (self.tr("Level"), "dB"),
+            PRESSURE: (self.tr("Pressure"), "bar"),
+            TORQUE: (self.tr("Torque"), "N·m"),
+            SPEED: (self.tr("Speed"), "1/min"),
+            DISC_TEMPERATURE: (self.tr("Disc"), "°C"),
+            MU: (self.tr("Friction"), "µ"),
         }
+
+    def _row_words(self, name: str) -> str:
+        """Entry of the menu."""
+        return {
+            SPECTROGRAM: self.tr("Spectrogram, level per line"),
+            MICROPHONE: self.tr("Sound pressure"),
+            LEVEL: self.tr("Sound level, Fast"),
+            PRESSURE: self.tr("Brake pressure"),
+            TORQUE: self.tr("Friction torque"),
+            SPEED: self.tr("Speed"),
+            DISC_TEMPERATURE: self.tr("Disc temperature"),
+            MU: self.tr("Coefficient of friction"),
+        }[name]
 
     def _restyle(self) -> None:
         u = self._services.theme.px

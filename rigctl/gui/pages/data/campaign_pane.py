@@ -137,11 +137,13 @@ class CampaignPane(QWidget):
         self._enable()
 
     def _text(self, info: CampaignInfo) -> str:
-        second = info.day_and_time or self.tr("no date")
-        return f"{info.name}\n{second}   " + self.tr("{0} brakings").format(info.brakings)
+        day = info.created[:10] or self.tr("no date")
+        return f"{info.name}\n{day} · {info.brakings}"
 
     def _tip(self, info: CampaignInfo) -> str:
-        lines = [str(info.path), info.program, info.rig]
+        count = self.tr("{0} brakings").format(info.brakings)
+        started = f"{info.day_and_time} UTC" if info.created else ""
+        lines = [str(info.path), started, count, info.program, info.rig]
         if info.simulated:
             lines.append(self.tr("simulated rig"))
         if info.problem:

@@ -22,6 +22,7 @@ from rigctl.gui.pages.data import remote
 from rigctl.gui.pages.data.details import LinesTable
 from rigctl.gui.pages.data.entry import Entry
 from rigctl.gui.services import Services
+from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.gui.widgets.plot_dress import PictureMenu, dress
 from rigctl.gui.work import Job
 
@@ -49,6 +50,8 @@ class ComparePane(QWidget):
         theme = services.theme
         self._set: list[_Compared] = []
         self.what = QComboBox()
+        self.what.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.what.setMinimumContentsLength(20)
         self.what.setObjectName("data-compare-what")
         self.what.setToolTip(self.tr("What is laid over each other"))
         for text, key in (
@@ -64,13 +67,12 @@ class ComparePane(QWidget):
         self.clear.setObjectName("data-compare-clear")
         self.clear.setToolTip(self.tr("Take all brakings out of the comparison"))
         self._top = QHBoxLayout()
-        self._top.addWidget(self.what)
-        self._top.addStretch(1)
+        self._top.addWidget(self.what, 1)
         self._top.addWidget(self.clear)
         self.hint = QLabel(
             self.tr(
-                "Choose two to four brakings in the table and press Compare. Further ones are added, also from "
-                "other campaigns."
+                "Choose two to four brakings in the table and press Compare. Further ones are added, also "
+                "from other campaigns."
             )
         )
         self.hint.setWordWrap(True)
@@ -84,7 +86,7 @@ class ComparePane(QWidget):
         self._legend: Any = item.addLegend(offset=(-10, 10))
         self.menu = PictureMenu(self.plot, "comparison", services.notify)
         self.menu.add(self.tr("Show all"), item.enableAutoRange)
-        self.readout = QLabel()
+        self.readout = ElidedLabel()
         self.readout.setProperty("look", "muted")
         self.table = LinesTable(
             theme,
@@ -182,6 +184,7 @@ class ComparePane(QWidget):
         dress(self.plot, self._services.theme, x_name, y_name)
         item.showGrid(x=True, y=True, alpha=0.15)
         self._legend.setLabelTextColor(self._services.theme.current.text)
+        self._legend.setLabelTextSize(f"{self._services.theme.font('small').pointSizeF():.1f}pt")
         for place, compared in enumerate(self._set):
             points = self._points(compared, what)
             if points is not None:

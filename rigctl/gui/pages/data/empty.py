@@ -8,9 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
 from rigctl.gui.theme import ThemeKeeper
+from rigctl.gui.widgets.flow import FlowLayout
 
 
 class EmptyPane(QWidget):
@@ -25,6 +26,7 @@ class EmptyPane(QWidget):
         self._theme = theme
         self.setObjectName("data-empty")
         self.title = QLabel(self.tr("No braking has been recorded yet"))
+        self.title.setWordWrap(True)
         self.words = QLabel()
         self.words.setWordWrap(True)
         self.words.setTextFormat(Qt.TextFormat.PlainText)
@@ -38,10 +40,9 @@ class EmptyPane(QWidget):
         self.other = QPushButton(self.tr("&Open folder…"))
         self.other.setObjectName("data-empty-other")
         self.other.setToolTip(self.tr("A campaign, or a folder of them"))
-        self._row = QHBoxLayout()
+        self._row = FlowLayout()
         for button in (self.by_hand, self.test, self.other):
             self._row.addWidget(button)
-        self._row.addStretch(1)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self.title)
@@ -58,9 +59,9 @@ class EmptyPane(QWidget):
         """Where campaigns are looked for."""
         self.words.setText(
             self.tr(
-                "Brakings are kept in campaigns, folders below {0}; there is none yet. The simulated rig records "
-                "one in a few seconds and needs no hardware: on the page Manual choose it, enable it and start "
-                "a braking, or let a test program run."
+                "Brakings are kept in campaigns, folders below {0}; there is none yet. The simulated rig "
+                "records one in a few seconds and needs no hardware: on the page Manual choose it, enable "
+                "it and start a braking, or let a test program run."
             ).format(folder)
         )
 

@@ -78,6 +78,16 @@ class ExportBar(QWidget):
         self.fault = FaultLabel(services.theme)
         self.progress = QProgressBar()
         self.progress.hide()
+        self._make_layout()
+        self.folder.textEdited.connect(self._check)
+        self.browse.clicked.connect(self._browse)
+        self.start.clicked.connect(self._start)
+        self.cancel.clicked.connect(self.stop)
+        services.theme.changed.connect(self._restyle)
+        self._restyle()
+        self.hide()
+
+    def _make_layout(self) -> None:
         folder_row = QHBoxLayout()
         folder_row.addWidget(self.folder, 1)
         folder_row.addWidget(self.browse)
@@ -93,13 +103,6 @@ class ExportBar(QWidget):
         self._column.addWidget(self.fault)
         self._column.addWidget(self.progress)
         self._column.addLayout(buttons)
-        self.folder.textEdited.connect(self._check)
-        self.browse.clicked.connect(self._browse)
-        self.start.clicked.connect(self._start)
-        self.cancel.clicked.connect(self.stop)
-        services.theme.changed.connect(self._restyle)
-        self._restyle()
-        self.hide()
 
     @property
     def busy(self) -> bool:

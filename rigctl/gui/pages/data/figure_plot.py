@@ -139,7 +139,7 @@ class FigurePlot(pg.PlotWidget):
             image[cell.row, cell.column] = (colour.red(), colour.green(), colour.blue(), 255)
             if texts:
                 item.addItem(self._text(cell, colour))
-        drawn = pg.ImageItem(image, axisOrder="row-major")
+        drawn = pg.ImageItem(image, axisOrder="row-major", levels=(0, 255))
         drawn.setRect(QRectF(-0.5, -0.5, shape[1], shape[0]))
         drawn.setZValue(-10)
         item.addItem(drawn)

@@ -39,18 +39,44 @@ class FiguresPane(QWidget):
         self._services = services
         theme = services.theme
         self._axes = self._axis_names()
+        self._make_top()
+        self._make_plots()
+        self._entries: tuple[list[Entry], list[Entry]] = ([], [])
+        self._data: list[FigureData | None] = [None, None]
+        self._jobs: list[Job | None] = [None, None]
+        self._active = False
+        self._stale = [False, False]
+        self._last_pick: tuple[str, ...] = ()
+        self._pick_number = 0
+        self._settle = QTimer(self)
+        self._settle.setSingleShot(True)
+        self._settle.setInterval(_SETTLE_MS)
+        self._settle.timeout.connect(self._compute)
+        self.loader = CampaignLoader(services.work, self)
+        self._second: dict[str, Entry] = {}
+        self.loader.opened.connect(self._on_second)
+        self.loader.changed.connect(self._on_second_changed)
+        self.loader.failed.connect(services.notify)
+        self.figure.currentIndexChanged.connect(self._on_figure)
+        self.beside.currentIndexChanged.connect(self._on_beside)
+        self.plots[0].picked.connect(self._on_picked)
+        self.plots[1].picked.connect(self._on_picked_beside)
+        theme.changed.connect(self._restyle)
+        self._restyle()
+
+    def _make_top(self) -> None:
         self.figure = QComboBox()
         self.figure.setObjectName("data-figure")
         self.figure.setToolTip(self.tr("Figures of the report; click a dot or a cell to open its braking"))
         self.figure.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.figure.setMinimumContentsLength(18)
+        self.figure.setMinimumContentsLength(12)
         for key, text in self._titles().items():
             self.figure.addItem(text, key)
         self.beside = QComboBox()
         self.beside.setObjectName("data-beside")
         self.beside.setToolTip(self.tr("A second campaign beside the first, on the same scales"))
         self.beside.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.beside.setMinimumContentsLength(12)
+        self.beside.setMinimumContentsLength(8)
         label = QLabel(self.tr("&Beside"))
         label.setBuddy(self.beside)
         self.scale = ElidedLabel()
@@ -59,6 +85,9 @@ class FiguresPane(QWidget):
         self._top.addWidget(self.figure, 2)
         self._top.addWidget(label)
         self._top.addWidget(self.beside, 1)
+
+    def _make_plots(self) -> None:
+        theme, services = self._services.theme, self._services
         self.plots = (
             FigurePlot(theme, "data-figure-plot", services.notify),
             FigurePlot(theme, "data-figure-beside", services.notify),
@@ -87,28 +116,6 @@ class FiguresPane(QWidget):
         self._column.addLayout(self._top)
         self._column.addWidget(self.scale)
         self._column.addWidget(self.outer, 1)
-        self._entries: tuple[list[Entry], list[Entry]] = ([], [])
-        self._data: list[FigureData | None] = [None, None]
-        self._jobs: list[Job | None] = [None, None]
-        self._active = False
-        self._stale = [False, False]
-        self._last_pick: tuple[str, ...] = ()
-        self._pick_number = 0
-        self._settle = QTimer(self)
-        self._settle.setSingleShot(True)
-        self._settle.setInterval(_SETTLE_MS)
-        self._settle.timeout.connect(self._compute)
-        self.loader = CampaignLoader(services.work, self)
-        self._second: dict[str, Entry] = {}
-        self.loader.opened.connect(self._on_second)
-        self.loader.changed.connect(self._on_second_changed)
-        self.loader.failed.connect(services.notify)
-        self.figure.currentIndexChanged.connect(self._on_figure)
-        self.beside.currentIndexChanged.connect(self._on_beside)
-        self.plots[0].picked.connect(self._on_picked)
-        self.plots[1].picked.connect(self._on_picked_beside)
-        theme.changed.connect(self._restyle)
-        self._restyle()
 
     # -- what is shown ------------------------------------------------------------------------------
 

@@ -131,15 +131,10 @@ class FilterBar(QWidget):
         self.clear.clicked.connect(lambda: self.setValue(BrakingFilter(), tell=True))
         self.fault = FaultLabel(theme)
         self.fault.setObjectName("data-filter-error")
-        self._flow = FlowLayout()
-        for widget in (
-            self.pressure, self.temperature, self.squeal, self.state, self.tag, self.text, self.clear,
-        ):  # fmt: skip
-            self._flow.addWidget(widget)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(self._flow)
-        column.addWidget(self.fault)
+        self.more = QPushButton()
+        self.more.setObjectName("data-filter-more")
+        self.more.setToolTip(self.tr("Show or hide the filters; hidden ones stay in force"))
+        self._make_layout()
         for bounds in (self.pressure, self.temperature):
             bounds.valueChanged.connect(self._on_changed)
         for box in (self.squeal, self.state, self.tag):
@@ -151,9 +146,38 @@ class FilterBar(QWidget):
         self._restyle()
         self._on_changed()
 
+    def _make_layout(self) -> None:
+        self._top = QHBoxLayout()
+        self._top.addWidget(self.text, 1)
+        self._top.addWidget(self.more)
+        self._top.addWidget(self.clear)
+        self._box = QWidget()
+        self._flow = FlowLayout(self._box)
+        for widget in (self.pressure, self.temperature, self.squeal, self.state, self.tag):
+            self._flow.addWidget(widget)
+        self.more.clicked.connect(lambda: self.set_open(not self.open))
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addLayout(self._top)
+        self._column.addWidget(self._box)
+        self._column.addWidget(self.fault)
+        self.set_open(True)
+
+    @property
+    def open(self) -> bool:
+        """True while the filters are seen."""
+        return self._open
+
+    def set_open(self, opened: bool) -> None:
+        """Show or hide the filters; they stay in force."""
+        self._open = opened
+        self._box.setVisible(opened)
+        self.more.setText(self.tr("&Filters ▾") if opened else self.tr("&Filters ▸"))
+
     def _restyle(self) -> None:
         self._flow.setSpacing(self._theme.px(1))
-        self.text.setFixedWidth(self._theme.px(26))
+        self._top.setSpacing(self._theme.px(1))
+        self._column.setSpacing(self._theme.px(1))
 
     def value(self) -> BrakingFilter:
         """What is wanted."""

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from PySide6.QtCore import QStringListModel, Qt, Signal
 from PySide6.QtWidgets import (
+    QComboBox,
     QCompleter,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QLineEdit,
-    QPushButton,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -25,7 +24,7 @@ from rigctl.gui.pages.data.entry import Entry
 from rigctl.gui.pages.data.marks import Mark
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.field_grid import FaultLabel, set_wrong
-from rigctl.gui.widgets.rating_row import RatingRow
+from rigctl.gui.widgets.rating_row import RATINGS
 from rigctl.recording.annotations import Action, checked_value
 
 
@@ -111,15 +110,13 @@ class NotesPanel(QWidget):
         self.said.setWordWrap(True)
         self.said.setTextFormat(Qt.TextFormat.PlainText)
         self.said.setProperty("look", "muted")
-        self.rating = RatingRow(theme, "data-rating")
-        self.no_rating = QPushButton(self.tr("None"))
-        self.no_rating.setObjectName("data-no-rating")
-        self.no_rating.setToolTip(self.tr("Remove the noise rating"))
-        rating = QHBoxLayout()
-        rating.setContentsMargins(0, 0, 0, 0)
-        rating.addWidget(self.rating)
-        rating.addWidget(self.no_rating)
-        rating.addStretch(1)
+        self.rating = QComboBox()
+        self.rating.setObjectName("data-rating")
+        self.rating.setToolTip(self.tr("Subjective noise rating of this braking"))
+        ends = {1: self.tr("1  nothing heard"), 5: self.tr("5  clearly heard"), 9: self.tr("9  unbearable")}
+        self.rating.addItem(self.tr("not rated"), None)
+        for number in RATINGS:
+            self.rating.addItem(ends.get(number, str(number)), number)
         self.marks = LinesTable(theme, "data-marks", (self.tr("at s"), self.tr("What happened")), right=(0,))
         self.marks.setToolTip(self.tr("Marks of the recording; click one to see it in time"))
         self.marks.itemSelectionChanged.connect(self._on_mark)
@@ -129,15 +126,14 @@ class NotesPanel(QWidget):
         self._form.addRow(self.tr("Ta&gs"), self.tags)
         self._form.labelForField(self.tags).setBuddy(self.tags.edit)  # type: ignore[union-attr]
         self._form.addRow(self.tr("N&ote"), self.note)
-        self._form.addRow(self.tr("Rating"), rating)
+        self._form.addRow(self.tr("Ra&ting"), self.rating)
         self._form.addRow(self.tr("Said then"), self.said)
         self._column = QVBoxLayout(self)
         self._column.addLayout(self._form)
         self._column.addWidget(self.marks, 1)
         self.tags.valueChanged.connect(self._on_tags)
         self.note.editingFinished.connect(self._on_note)
-        self.rating.valueChanged.connect(self._on_rating)
-        self.no_rating.clicked.connect(self._on_no_rating)
+        self.rating.activated.connect(self._on_rating)
         self._note_before = ""
         self.marks.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
         theme.changed.connect(self._restyle)
@@ -157,7 +153,7 @@ class NotesPanel(QWidget):
         """Another braking, or other words about it; what is being typed about the same one stays."""
         same = entry is not None and self._entry is not None and entry.name == self._entry.name
         self._entry = entry
-        for widget in (self.tags, self.note, self.rating, self.no_rating):
+        for widget in (self.tags, self.note, self.rating):
             widget.setEnabled(entry is not None and not entry.trashed)
         if not (same and self.tags.edit.hasFocus()):
             self.tags.setValue(entry.row.tags if entry else ())
@@ -165,8 +161,8 @@ class NotesPanel(QWidget):
             self.note.setText(note)
             self.note.setCursorPosition(0)
         self._note_before = note
-        rating = entry.row.rating if entry else None
-        self.rating.setValue(rating if rating in self.rating.buttons else 0)
+        place = self.rating.findData(entry.row.rating if entry else None)
+        self.rating.setCurrentIndex(max(place, 0))
         self.said.setText(" · ".join(said))
         self._form.setRowVisible(self.said, bool(said))
         self._times = [mark.time_s for mark in marks]
@@ -184,13 +180,10 @@ class NotesPanel(QWidget):
             self.note.setModified(False)
             self.noteGiven.emit(self._entry, text)
 
-    def _on_rating(self, rating: int) -> None:
-        if self._entry is not None and rating:
+    def _on_rating(self) -> None:
+        rating = self.rating.currentData()
+        if self._entry is not None and rating != self._entry.row.rating:
             self.ratingGiven.emit(self._entry, rating)
-
-    def _on_no_rating(self) -> None:
-        if self._entry is not None and self._entry.row.rating is not None:
-            self.ratingGiven.emit(self._entry, None)
 
     def _on_mark(self) -> None:
         rows = {index.row() for index in self.marks.selectedIndexes()}

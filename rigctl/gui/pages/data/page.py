@@ -10,21 +10,16 @@ from typing import Any
 
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtGui import QKeySequence, QShortcut
-from PySide6.QtWidgets import QPushButton, QSplitter, QStackedWidget, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout
 
 from rigctl.gui.pages.base import Page
 from rigctl.gui.pages.data.annotator import Annotator
-from rigctl.gui.pages.data.braking_pane import BrakingPane
-from rigctl.gui.pages.data.campaign_pane import CampaignPane
 from rigctl.gui.pages.data.campaigns import CampaignInfo, find_campaigns, is_campaign
-from rigctl.gui.pages.data.compare_pane import ComparePane
-from rigctl.gui.pages.data.empty import EmptyPane
 from rigctl.gui.pages.data.entry import TRASHED, Entry
-from rigctl.gui.pages.data.export_bar import ExportBar, show_in_file_manager
-from rigctl.gui.pages.data.figures_pane import FiguresPane
+from rigctl.gui.pages.data.export_bar import show_in_file_manager
 from rigctl.gui.pages.data.loader import CampaignLoader
+from rigctl.gui.pages.data.parts import Parts
 from rigctl.gui.pages.data.reports import ReportBuilder
-from rigctl.gui.pages.data.table_pane import TablePane
 from rigctl.gui.services import Services
 from rigctl.gui.widgets.file_asking import ask_open
 from rigctl.gui.work import Job, Reporter
@@ -37,59 +32,22 @@ class DataPage(Page):
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
-        theme = services.theme
         self.loader = CampaignLoader(services.work, self)
         self.annotator = Annotator(services.work, self)
         self.reports = ReportBuilder(services.work, self)
-        self.campaigns = CampaignPane(theme)
-        self.table = TablePane(theme)
-        self.braking = BrakingPane(services)
-        self.figures = FiguresPane(services)
-        self.compare = ComparePane(services)
-        self.export = ExportBar(services)
-        self.empty = EmptyPane(theme)
+        self.parts = Parts(services)
+        self.campaigns, self.table, self.braking = self.parts.campaigns, self.parts.table, self.parts.braking
+        self.figures, self.compare, self.export = self.parts.figures, self.parts.compare, self.parts.export
+        self.empty, self.tabs = self.parts.empty, self.parts.tabs
         self._folder = services.data_folder
         self._scan: Job | None = None
         self._wanted: tuple[Path, int | None] | None = None
         self._asked_folder: Path | None = None
-        self.tabs = QTabWidget()
-        self.tabs.setObjectName("data-tabs")
-        self.tabs.setDocumentMode(True)
-        self.tabs.addTab(self.braking, self.tr("Braking"))
-        self.tabs.addTab(self.figures, self.tr("Figures"))
-        self.tabs.addTab(self.compare, self.tr("Comparison"))
-        self.large = QPushButton(self.tr("Large"))
-        self.large.setObjectName("data-large")
-        self.large.setCheckable(True)
-        self.large.setToolTip(self.tr("Hide list and table (F11); Esc brings them back"))
-        self.tabs.setCornerWidget(self.large)
-        middle = QWidget()
-        column = QVBoxLayout(middle)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.table, 1)
-        self._export_box = QWidget()
-        self._export_column = QVBoxLayout(self._export_box)
-        self._export_column.addWidget(self.export)
-        column.addWidget(self._export_box)
-        self._middle = middle
-        self.split = QSplitter(Qt.Orientation.Horizontal)
-        for part, stretch in ((self.campaigns, 0), (middle, 4), (self.tabs, 5)):
-            self.split.addWidget(part)
-            self.split.setStretchFactor(self.split.count() - 1, stretch)
-        self.split.setCollapsible(1, False)
-        u = theme.px
-        self.split.setSizes([u(19), u(61), u(64)])
-        self.stack = QStackedWidget()
-        self.stack.addWidget(self.split)
-        self.stack.addWidget(self.empty)
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(self.stack)
+        whole.addWidget(self.parts)
         self._connect()
         self._shortcuts()
-        theme.changed.connect(self._restyle)
-        self._restyle()
 
     def _connect(self) -> None:
         c, t, a = self.campaigns, self.table, self.table.bar
@@ -106,7 +64,7 @@ class DataPage(Page):
         self.loader.progress.connect(self._on_progress)
         self.loader.failed.connect(lambda words: t.bar.say(words, can_undo=False, wrong=True))
         t.selectionChanged.connect(self._on_selection)
-        t.activated.connect(lambda _entry: self._show_large(True, self.braking))
+        t.activated.connect(lambda _entry: self.parts.show_large(self.braking))
         a.compare.connect(self._on_compare)
         a.excludeGiven.connect(lambda reason: self.annotator.exclude(self._here(), reason))
         a.restore.connect(lambda: self.annotator.restore(self._here()))
@@ -126,7 +84,6 @@ class DataPage(Page):
         self.figures.picked.connect(self._on_picked)
         self.figures.pickedBeside.connect(self._on_picked_beside)
         self.tabs.currentChanged.connect(self._on_tab)
-        self.large.toggled.connect(self._show_large)
         self.empty.manual.connect(lambda: self.services.navigate("manual"))
         self.empty.sequence.connect(lambda: self.services.navigate("sequence"))
         self.empty.otherFolder.connect(self.ask_folder)
@@ -137,8 +94,8 @@ class DataPage(Page):
         for keys, action in (
             ("Ctrl+Z", self.annotator.undo),
             ("F5", self.refresh),
-            ("F11", self.large.toggle),
-            ("Esc", lambda: self.large.setChecked(False)),
+            ("F11", self.parts.large.toggle),
+            ("Esc", lambda: self.parts.large.setChecked(False)),
             ("Ctrl+P", self.braking.sound.play.click),
         ):
             QShortcut(QKeySequence(keys), self, action, context=within)
@@ -186,7 +143,7 @@ class DataPage(Page):
             self.loader.refresh()
             self._choose_wanted()
             return
-        self.stack.setCurrentWidget(self.split)
+        self.parts.show_data(True)
         self.campaigns.setValue(path)
         self.braking.show_nothing()
         self.table.bar.say("", can_undo=False)
@@ -223,7 +180,7 @@ class DataPage(Page):
         elif present is not None:
             self.campaigns.setValue(present)
         self.figures.show_campaigns(campaigns, present)
-        self.stack.setCurrentWidget(self.split if present is not None else self.empty)
+        self.parts.show_data(present is not None)
 
     def _show(self, path: Path | None) -> None:
         if path is not None and not show_in_file_manager(path):
@@ -343,23 +300,12 @@ class DataPage(Page):
 
     def _on_tab(self) -> None:
         self.figures.set_active(self.tabs.currentWidget() is self.figures)
-        self._show_large(self.large.isChecked())
-
-    def _show_large(self, large: bool, pane: QWidget | None = None) -> None:
-        if pane is not None:
-            self.tabs.setCurrentWidget(pane)
-        if self.large.isChecked() != large:
-            self.large.setChecked(large)  # comes back here
-            return
-        self.campaigns.setVisible(not large)
-        self._middle.setVisible(not large)
-        self.braking.set_wide(large)
 
     # -- remembered ---------------------------------------------------------------------------------
 
     def save_layout(self, settings: QSettings) -> None:
         """Splitters, columns, the open campaign."""
-        settings.setValue("split", self.split.saveState())
+        settings.setValue("split", self.parts.split.saveState())
         settings.setValue("rows", ",".join(sorted(self.braking.rows.shown)))
         settings.setValue("figure", self.figures.figure.currentData())
         settings.setValue("export-folder", self.export.folder.text())
@@ -371,7 +317,7 @@ class DataPage(Page):
     def restore_layout(self, settings: QSettings) -> None:
         """As saved; what has gone since is passed over."""
         if (state := settings.value("split")) is not None:
-            self.split.restoreState(state)
+            self.parts.split.restoreState(state)
         if rows := str(settings.value("rows", "")):
             for name, switch in self.braking.switches.items():
                 switch.setChecked(name in rows.split(","))
@@ -396,11 +342,6 @@ class DataPage(Page):
             "<b>F5</b>: look again. Ctrl or Shift and click choose several brakings. "
             "The wheel zooms the time; a right click on a plot copies or saves its picture.</p>"
         )
-
-    def _restyle(self) -> None:
-        u = self.services.theme.px(1)
-        self._export_column.setContentsMargins(u, 0, u, u)
-        self._export_box.setVisible(True)
 
 
 def _find(folder: Path, reporter: Reporter) -> tuple[Path, list[CampaignInfo]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QCheckBox, QPushButton, QVBoxLayout, QWidget
 
 from rigctl.core.channels import MICROPHONE
 from rigctl.gui.format import number_text
@@ -17,6 +17,7 @@ from rigctl.gui.pages.data.player import Player
 from rigctl.gui.services import Services
 from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.gui.widgets.file_asking import ask_save
+from rigctl.gui.widgets.flow import FlowLayout
 
 
 class SoundBar(QWidget):
@@ -52,11 +53,13 @@ class SoundBar(QWidget):
         self.words = ElidedLabel()
         self.words.setProperty("look", "muted")
         self.words.setObjectName("data-sound-words")
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
+        self._flow = FlowLayout()
         for widget in (self.play, self.equal, self.save):
-            self._row.addWidget(widget)
-        self._row.addWidget(self.words, 1)
+            self._flow.addWidget(widget)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addLayout(self._flow)
+        self._column.addWidget(self.words)
         self.player.started.connect(self._on_started)
         self.player.position.connect(self.position.emit)
         self.player.stopped.connect(self._on_stopped)
@@ -67,11 +70,12 @@ class SoundBar(QWidget):
         self.show_braking(None, "", None)
 
     def _restyle(self) -> None:
-        self._row.setSpacing(self._services.theme.px(1))
+        self._flow.setSpacing(self._services.theme.px(1))
+        self._column.setSpacing(self._services.theme.px(0.5))
 
     def add(self, widget: QWidget) -> None:
         """A further button at the right end."""
-        self._row.addWidget(widget)
+        self._flow.addWidget(widget)
 
     def show_braking(self, path: Path | None, name: str, rate_hz: float | None) -> None:
         """Another braking; its rate is None when it has no sound."""
@@ -132,7 +136,7 @@ class SoundBar(QWidget):
 
     def _say(self, words: str) -> None:
         self.words.setText(words)
-        self.words.setToolTip(words)
+        self.words.setVisible(bool(words))
 
 
 def sound_rate_hz(summary: dict) -> float | None:

@@ -11,8 +11,8 @@ from collections.abc import Iterable
 from functools import partial
 
 from PySide6.QtCore import QItemSelection, QItemSelectionModel, QPoint, QSettings, Qt, Signal
-from PySide6.QtGui import QKeySequence, QShortcut
-from PySide6.QtWidgets import QAbstractItemView, QLabel, QMenu, QProgressBar, QTableView, QVBoxLayout, QWidget
+from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
+from PySide6.QtWidgets import QAbstractItemView, QMenu, QProgressBar, QTableView, QVBoxLayout, QWidget
 
 from rigctl.gui.pages.data.actions_bar import ActionsBar
 from rigctl.gui.pages.data.columns import COLUMNS
@@ -20,9 +20,15 @@ from rigctl.gui.pages.data.entry import Entry
 from rigctl.gui.pages.data.filter_bar import FilterBar
 from rigctl.gui.pages.data.table_model import BrakingTableModel
 from rigctl.gui.theme import ThemeKeeper
+from rigctl.gui.widgets.elided import ElidedLabel
 
 _PLACE = {column.key: number for number, column in enumerate(COLUMNS)}
-_WIDTHS = {"start": 19, "sequence": 12, "role": 9, "tags": 12, "remark": 30, "state": 11, "index": 6}
+_WIDTHS = {
+    "index": 6, "start": 19, "sequence": 12, "role": 9, "set_pressure": 7, "set_temperature": 7, "mu": 8,
+    "frequency": 7.5, "level": 7, "state": 11, "tags": 12, "remark": 30,
+}  # fmt: skip
+_LOW = 60
+"""Below this height (units of the grid) the filters are folded."""
 
 
 class TablePane(QWidget):
@@ -38,7 +44,7 @@ class TablePane(QWidget):
         self._theme = theme
         self.model = BrakingTableModel(theme)
         self.filters = FilterBar(theme)
-        self.count = QLabel()
+        self.count = ElidedLabel()
         self.count.setObjectName("data-count")
         self.count.setProperty("look", "muted")
         self.progress = QProgressBar()
@@ -222,6 +228,7 @@ class TablePane(QWidget):
     def save(self, settings: QSettings) -> None:
         """Columns with widths, order of sorting, filter is not remembered: all is shown at the next start."""
         header = self.view.horizontalHeader()
+        settings.setValue("filters", int(self.filters.open))
         settings.setValue("columns", ",".join(self.shown_columns()))
         widths = [f"{c.key}:{header.sectionSize(n)}" for n, c in enumerate(COLUMNS) if header.sectionSize(n)]
         settings.setValue("widths", ",".join(widths))
@@ -229,6 +236,7 @@ class TablePane(QWidget):
 
     def restore(self, settings: QSettings) -> None:
         """As saved; unknown names are passed over."""
+        self.filters.set_open(str(settings.value("filters", 1)) == "1")
         keys = [key for key in str(settings.value("columns", "")).split(",") if key in _PLACE]
         header = self.view.horizontalHeader()
         if keys:
@@ -245,12 +253,20 @@ class TablePane(QWidget):
             order = Qt.SortOrder.DescendingOrder if down == "1" else Qt.SortOrder.AscendingOrder
             self.model.sort(_PLACE[key], order)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Where the pane becomes low, the filters give their room to the table."""
+        super().resizeEvent(event)
+        low = self._theme.px(_LOW)
+        if event.size().height() < low and not 0 <= event.oldSize().height() < low:
+            self.filters.set_open(False)
+
     # -- look ---------------------------------------------------------------------------------------
 
     def _restyle(self) -> None:
         u = self._theme.px
         self._column.setContentsMargins(u(1), u(1), u(1), u(1))
         self._column.setSpacing(u(1))
+        self.view.setStyleSheet(f"QTableView::item {{ padding: 0 {u(0.75)}px; }}")
         self.view.verticalHeader().setDefaultSectionSize(u(3.25))
         self.view.verticalHeader().setMinimumSectionSize(u(2))
         self._widths()

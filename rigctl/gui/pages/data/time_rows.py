@@ -6,6 +6,7 @@ below the mouse, zoom by wheel along the time. Not its job: reading the braking,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPoint, QRectF, Qt, Signal
-from PySide6.QtGui import QContextMenuEvent, QGuiApplication
+from PySide6.QtGui import QContextMenuEvent, QFontMetricsF, QGuiApplication
 from PySide6.QtWidgets import QMenu
 
 from rigctl.analysis.braking_view import LEVEL, MU, BrakingView, Curve, SoundPicture
@@ -29,6 +30,9 @@ SPECTROGRAM = "spectrogram"
 ROWS = (SPECTROGRAM, MICROPHONE, LEVEL, PRESSURE, TORQUE, SPEED, DISC_TEMPERATURE, MU)
 DECIMALS = {LEVEL: 1, PRESSURE: 1, TORQUE: 0, SPEED: 1, DISC_TEMPERATURE: 0, MU: 3, MICROPHONE: 3}
 _TALL = 3
+_LEAST_FIRST = (SPEED, LEVEL, DISC_TEMPERATURE, TORQUE, MU, PRESSURE, MICROPHONE)
+"""Rows that give way first where there is little room."""
+_LEAST_HEIGHT = 3.25
 _RANGE_DB = 70.0
 
 
@@ -46,6 +50,24 @@ class _Row:
         self.extras: list[Any] = []
 
 
+class FewTicks(pg.AxisItem):
+    """A value axis with as many ticks as have room below each other: low rows have two or three."""
+
+    def __init__(self, theme: ThemeKeeper) -> None:
+        super().__init__("left")
+        self._line_px = QFontMetricsF(theme.font("small")).height()
+
+    def tickSpacing(self, minVal: float, maxVal: float, size: float) -> Any:
+        """One level of ticks, at 1, 2 or 5 times a power of ten."""
+        span = abs(maxVal - minVal)
+        if span == 0.0 or not math.isfinite(span):
+            return super().tickSpacing(minVal, maxVal, size)
+        least = span / max(size / (1.3 * self._line_px), 2.0)
+        power = 10.0 ** math.floor(math.log10(least))
+        step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least * 0.999)
+        return [(step, 0.0)]
+
+
 class TimeRows(pg.GraphicsLayoutWidget):
     """The plots of one braking."""
 
@@ -58,7 +80,7 @@ class TimeRows(pg.GraphicsLayoutWidget):
         self._theme, self._notify = theme, notify
         self.setObjectName("data-rows")
         self.setMinimumHeight(0)
-        self.titles: dict[str, str] = {}
+        self.titles: dict[str, tuple[str, str]] = {}
         self.shown: set[str] = {name for name in ROWS if name != LEVEL}
         self._view: BrakingView | None = None
         self._marks: Sequence[Mark] = ()
@@ -87,11 +109,8 @@ class TimeRows(pg.GraphicsLayoutWidget):
 
     def set_shown(self, name: str, shown: bool) -> None:
         """Switch a row on or off; the stretch of time stays."""
-        span = self.span()
         (self.shown.add if shown else self.shown.discard)(name)
-        self._build()
-        if span is not None:
-            self.set_span(*span)
+        self._rebuild()
 
     def span(self) -> tuple[float, float] | None:
         """Stretch of time that is shown, s."""
@@ -128,6 +147,13 @@ class TimeRows(pg.GraphicsLayoutWidget):
             if time_s is not None:
                 row.play.setPos(time_s)
 
+    def _rebuild(self) -> None:
+        """Make the rows anew; the stretch of time stays."""
+        span = self.span()
+        self._build()
+        if span is not None:
+            self.set_span(*span)
+
     # -- making -------------------------------------------------------------------------------------
 
     def _first(self) -> _Row | None:
@@ -139,13 +165,17 @@ class TimeRows(pg.GraphicsLayoutWidget):
         view = self._view
         if view is None:
             return
-        names = [name for name in self.available() if name in self.shown]
+        names = self._names_that_fit()
         layout: Any = self.ci.layout
         layout.setVerticalSpacing(self._theme.px(0.25))
         layout.setContentsMargins(*[self._theme.px(0.5)] * 4)
+        layout.setHorizontalSpacing(0)
+        layout.setColumnFixedWidth(0, self._theme.px(8.5))
         for number, name in enumerate(names):
-            item: Any = self.ci.addPlot(row=number, col=0, enableMenu=False)
-            self._rows[name] = self._dress(item, name, last=number == len(names) - 1)
+            axis = FewTicks(self._theme)
+            item: Any = self.ci.addPlot(row=number, col=1, enableMenu=False, axisItems={"left": axis})
+            row = self._rows[name] = self._dress(item, name, last=number == len(names) - 1)
+            self.ci.addItem(row.title, row=number, col=0)
         first = self._first()
         for name, row in self._rows.items():
             if first is not None and row is not first:
@@ -158,14 +188,26 @@ class TimeRows(pg.GraphicsLayoutWidget):
             self._say(row, None)
         self._share_height()
 
+    def _names_that_fit(self) -> list[str]:
+        """Rows that are switched on, as far as they are not too low to be read."""
+        names = [name for name in self.available() if name in self.shown]
+        for name in _LEAST_FIRST:
+            if len(names) > 1 and name in names and self._unit(names) < self._theme.px(_LEAST_HEIGHT):
+                names.remove(name)
+        return names
+
+    def _unit(self, names: Sequence[str]) -> float:
+        """Height of a curve, px."""
+        edges = self._theme.px(1) + self._theme.px(0.25) * max(len(names) - 1, 0) + self._theme.px(4.5)
+        parts = sum(_TALL if name == SPECTROGRAM else 1 for name in names)
+        return max((self.height() - edges) / max(parts, 1), 1.0)
+
     def _share_height(self) -> None:
         """The spectrogram is three times as high as a curve, the last row has the time axis below it."""
         layout: Any = self.ci.layout
-        gap, edge = self._theme.px(0.25), self._theme.px(0.5)
-        axis = self._theme.px(5)
+        axis = self._theme.px(4.5)
         names = list(self._rows)
-        room = self.height() - 2 * edge - gap * max(len(names) - 1, 0) - axis
-        unit = max(room / max(sum(_TALL if name == SPECTROGRAM else 1 for name in names), 1), 1.0)
+        unit = self._unit(names)
         for number in range(layout.rowCount()):
             name = names[number] if number < len(names) else ""
             height = unit * (_TALL if name == SPECTROGRAM else 1) if name else 0.0
@@ -174,8 +216,12 @@ class TimeRows(pg.GraphicsLayoutWidget):
     def resizeEvent(self, event: Any) -> None:
         """Share the new height."""
         super().resizeEvent(event)
-        if hasattr(self, "_rows"):
+        if not hasattr(self, "_rows"):  # called while it is being made
+            return
+        if list(self._rows) == self._names_that_fit():
             self._share_height()
+        else:
+            self._rebuild()
 
     def _dress(self, item: Any, name: str, last: bool) -> _Row:
         t, row = self._theme.current, _Row(item, name)
@@ -189,13 +235,12 @@ class TimeRows(pg.GraphicsLayoutWidget):
             axis.setPen(pg.mkPen(t.plot_line))
             axis.setTextPen(pg.mkPen(t.text))
             axis.setTickFont(self._theme.font("small"))
-        item.getAxis("left").setWidth(self._theme.px(6))
-        item.getAxis("left").setStyle(maxTickLevel=0)
+        item.getAxis("left").setWidth(self._theme.px(5.5))
         item.getAxis("bottom").setStyle(showValues=last)
         if last:
             item.getAxis("bottom").label.setFont(self._theme.font("small"))
             item.setLabel("bottom", self.tr("Time since the first sample [s]"), color=t.text)
-            item.getAxis("bottom").setHeight(self._theme.px(5))
+            item.getAxis("bottom").setHeight(self._theme.px(4.5))
         else:
             item.getAxis("bottom").setHeight(self._theme.px(0.5))
         row.cursor.setPen(pg.mkPen(t.blue, width=1))
@@ -205,11 +250,6 @@ class TimeRows(pg.GraphicsLayoutWidget):
         for line in (row.cursor, row.play):
             line.setZValue(20)
             item.addItem(line, ignoreBounds=True)
-        row.title.setParentItem(item.vb)
-        row.title.setZValue(30)
-        row.title.anchor(
-            itemPos=(0, 0), parentPos=(0, 0), offset=(self._theme.px(0.5), -self._theme.px(0.25))
-        )
         return row
 
     def _draw_curve(self, row: _Row, curve: Curve) -> None:
@@ -291,14 +331,18 @@ class TimeRows(pg.GraphicsLayoutWidget):
         return found
 
     def _say(self, row: _Row, values: dict[str, float] | None) -> None:
-        t = self._theme.current
-        title = self.titles.get(row.name, row.name)
-        colour = "#ffffff" if row.name == SPECTROGRAM else t.muted
-        back = "rgba(0,0,0,130)" if row.name == SPECTROGRAM else t.plot
-        words = f"<span style='color:{colour};background-color:{back}'>&nbsp;{title}&nbsp;</span>"
+        """Name and unit beside the row; with a cursor the value before the unit."""
+        name, unit = self.titles.get(row.name, (row.name, ""))
+        second = unit
         if values is not None and row.name in values:
             number = number_text(values[row.name], DECIMALS.get(row.name, 2))
-            words += f"<span style='color:{t.text};background-color:{back}'><b>{number}</b>&nbsp;</span>"
+            second = f"<b>{number}</b> {unit}"
+        self._write(row, name, second)
+
+    def _write(self, row: _Row, first: str, second: str) -> None:
+        t = self._theme.current
+        words = f"<span style='color:{t.muted}'>{first}</span><br>"
+        words += f"<span style='color:{t.text}'>{second or '&nbsp;'}</span>"
         row.title.setText(words, size=f"{self._theme.font('small').pointSizeF():.1f}pt")
 
     def _row_at(self, place: Any) -> tuple[_Row, float, float] | None:
@@ -327,15 +371,8 @@ class TimeRows(pg.GraphicsLayoutWidget):
         if spectrogram is not None and time_s is not None and f_khz is not None and self._view is not None:
             level = _level_at(self._view.picture, time_s, f_khz * 1e3)
             if level is not None:
-                self._say_picture(spectrogram, f_khz, level)
+                self._write(spectrogram, f"{f_khz * 1e3:.0f} Hz", f"<b>{level:.0f}</b> dB")
         self.timePointed.emit(float("nan") if time_s is None else time_s)
-
-    def _say_picture(self, row: _Row, f_khz: float, level: float) -> None:
-        title = self.titles.get(SPECTROGRAM, SPECTROGRAM)
-        style = "color:#ffffff;background-color:rgba(0,0,0,130)"
-        value = f"{f_khz * 1e3:.0f} Hz, {level:.0f} dB"
-        words = f"<span style='{style}'>&nbsp;{title}&nbsp; <b>{value}</b>&nbsp;</span>"
-        row.title.setText(words, size=f"{self._theme.font('small').pointSizeF():.1f}pt")
 
     def leaveEvent(self, event: Any) -> None:
         """The mouse has left: no cursor."""
@@ -382,10 +419,7 @@ class TimeRows(pg.GraphicsLayoutWidget):
 
     def _restyle(self) -> None:
         self.setBackground(self._theme.current.plot)
-        span = self.span()
-        self._build()
-        if span is not None:
-            self.set_span(*span)
+        self._rebuild()
 
 
 def _call(action: Callable[[], object], _checked: bool = False) -> None:
