@@ -21,6 +21,7 @@ from drivers.ventilator.canopen_output import CanopenVentilator
 from rigctl.config.loading import load_model
 from rigctl.hal.devices import RigContext
 from sim_hardware.bench.can import BenchCan, BenchCanSettings, FaultRule
+from sim_hardware.bench.can.settings import AnalogOutputSettings, RegulatorSettings
 from sim_hardware.bench.signals import RigSignals
 from sim_hardware.brake_model import load_brake
 from sim_hardware.devices import roles
@@ -35,6 +36,9 @@ PRESSURE_SETTINGS: dict[str, Any] = {
 VENTILATOR_SETTINGS: dict[str, Any] = {
     "bus": "main", "node": OUTPUT, "full_m3_h": 1000.0, "configure": True, "watch_ms": 600, "silence_s": 0.6,
 }  # fmt: skip
+QUICK = BenchCanSettings(
+    regulator=RegulatorSettings(boot_ms=10), analog_output=AnalogOutputSettings(boot_ms=10)
+)
 _channels = itertools.count()
 
 
@@ -76,8 +80,9 @@ class EmulatedWorld:
         self.channel = f"contract-{os.getpid()}-{next(_channels)}"
         self.bus = can.Bus(interface="virtual", channel=self.channel, ignore_config=True)
         self.signals = _Signals()
-        self.bench = BenchCan(self.bus, self.signals, bench)
+        self.bench = BenchCan(self.bus, self.signals, bench or QUICK)
         self.bench.start()
+        self.bench.wait_booted()
         self.line = _Line(self.signals)
         self.line.start()
         buses = {"main": {"interface": "virtual", "channel": self.channel}}

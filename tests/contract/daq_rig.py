@@ -101,6 +101,7 @@ class Rig:
         self._bus = can.Bus(self.channel, interface="virtual")
         self.can = BenchCan(self._bus, self.signals)
         self.can.start()
+        self.can.wait_booted()
         self.folder = folder
         self.ports = {}
         if pyrometer:

@@ -131,6 +131,7 @@ def on_can(tmp_path: Path, port: int) -> Party:
     settings = BenchCanSettings(amplifier=AmplifierSettings(tpdo_ms=5), encoder=EncoderSettings(tpdo_ms=5))
     bench = BenchCan(bus, RigSignals(), settings)
     bench.start()
+    bench.wait_booted()
     channel = CanSafetyChannel(SETTINGS, context)
     link = link_of(channel)
     link.connect(10.0)

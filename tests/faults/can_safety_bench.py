@@ -101,6 +101,7 @@ class CanRig:
         with contextlib.suppress(OSError):
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
         self.can.start()
+        self.can.wait_booted()
         self._thread.start()
         return self
 

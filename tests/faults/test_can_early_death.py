@@ -39,6 +39,7 @@ def test_the_regulator_vents(tmp_path: Path) -> None:
     with can.Bus(interface="udp_multicast", **arguments) as bus:
         bench = BenchCan(bus, signals)
         bench.start()
+        bench.wait_booted()
         controller = subprocess.Popen(
             [sys.executable, str(HERE / "can_actuator_controller.py"), json.dumps(table), str(tmp_path)],
             cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,

@@ -21,7 +21,7 @@ from rigctl.core.errors import ConfigError, DeviceError
 from sim_hardware.bench.can import loopback
 from sim_hardware.bench.can.faults import FaultRule, FrameFaults
 from sim_hardware.bench.can.frames import HIGHEST_COB_ID, Frame
-from sim_hardware.bench.can.node import Device, Node
+from sim_hardware.bench.can.node import Device, NmtState, Node
 from sim_hardware.bench.can.nodes.amplifier import Amplifier
 from sim_hardware.bench.can.nodes.analog_output import AnalogOutput
 from sim_hardware.bench.can.nodes.current_input import CurrentInput
@@ -118,6 +118,24 @@ class BenchCan:
         self.power_on()
         self._thread = threading.Thread(target=self._serve, name="bench-can", daemon=True)
         self._thread.start()
+
+    def wait_booted(self, timeout_s: float = 10.0) -> None:
+        """Wait until every node with power has sent its boot-up message.
+
+        Raises
+        ------
+        DeviceError
+            One has not, within the time.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while booting := [n for n, node in self.nodes.items() if node.state is NmtState.INITIALISING]:
+            self.check()
+            if time.monotonic() > deadline_s:
+                raise DeviceError(
+                    f"{', '.join(booting)}: no boot-up within {timeout_s:g} s.", place="bench: can",
+                    remedy="Look at boot_ms in the bench file.",
+                )  # fmt: skip
+            time.sleep(0.002)
 
     def stop(self) -> None:
         """Stop the thread and take the power away: outputs fall into their de-energised state."""

@@ -87,12 +87,21 @@ def rig():
     bus = can.Bus(channel, interface="virtual")
     bench = BenchCan(bus, signals)
     network = canopen.Network()
+    network.NOTIFIER_CYCLE = 0.05  # so long it takes to end
     network.connect(interface="virtual", channel=channel)
     yield bench, network, signals
     bench.stop()
     bench.check()
     network.disconnect()
     bus.shutdown()
+
+
+def _boot(bench: BenchCan, network: canopen.Network, node_id: int) -> None:
+    """Start the bench and hear the node's boot-up. Who waits for it only afterwards may have missed it."""
+    heard = threading.Event()
+    network.subscribe(0x700 + node_id, lambda _id, data, _time: data == b"\0" and heard.set())
+    bench.start()
+    assert heard.wait(5.0)
 
 
 def _wait(condition, timeout_s: float = 3.0) -> None:
@@ -105,8 +114,7 @@ def _wait(condition, timeout_s: float = 3.0) -> None:
 def test_the_library_configures_the_regulator_and_moves_pressure(rig):
     bench, network, signals = rig
     node = network.add_node(canopen.RemoteNode(REGULATOR, _dictionary(*REGULATOR_DICTIONARY)))
-    bench.start()
-    node.nmt.wait_for_bootup(3)
+    _boot(bench, network, REGULATOR)
     assert node.sdo["device type"].raw == 0x80198
     assert node.sdo["name"].raw == "Bench pressure regulator"
     assert node.sdo["identity"][2].raw == REGULATOR
@@ -138,8 +146,7 @@ def test_the_library_configures_the_regulator_and_moves_pressure(rig):
 def test_the_library_remaps_a_pdo_and_reads_segments(rig):
     bench, network, _ = rig
     node = network.add_node(canopen.RemoteNode(AMPLIFIER, _dictionary(*AMPLIFIER_DICTIONARY)))
-    bench.start()
-    node.nmt.wait_for_bootup(3)
+    _boot(bench, network, AMPLIFIER)
     node.tpdo.read()
     pdo = node.tpdo[1]
     pdo.clear()
@@ -157,8 +164,7 @@ def test_the_library_remaps_a_pdo_and_reads_segments(rig):
 def test_faults_from_another_thread_while_it_runs(rig):
     bench, network, _ = rig
     node = network.add_node(canopen.RemoteNode(AMPLIFIER, _dictionary(*AMPLIFIER_DICTIONARY)))
-    bench.start()
-    node.nmt.wait_for_bootup(3)
+    _boot(bench, network, AMPLIFIER)
     bench.add_fault(FaultRule(kind="mute", node=AMPLIFIER))
     node.sdo.RESPONSE_TIMEOUT = 0.1
     with pytest.raises(canopen.SdoCommunicationError):

@@ -62,6 +62,7 @@ class Wire:
         self.listener = can.Bus(interface="virtual", channel=self.channel, ignore_config=True)
         self.bench = BenchCan(self.bus, RigSignals())
         self.bench.start()
+        self.bench.wait_booted()
         buses = {"main": {"interface": "virtual", "channel": self.channel}}
         self.context = RigContext(folder, "real", None, "rig.toml", folder, buses=buses)
         self.network = canopen_network(self.context, "main")
@@ -89,7 +90,6 @@ class Wire:
 @pytest.fixture
 def wire(tmp_path):
     made = Wire(tmp_path)
-    time.sleep(0.1)
     yield made
     made.close()
 

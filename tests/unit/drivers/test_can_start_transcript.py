@@ -34,11 +34,11 @@ def log(tmp_path):
     bus = can.Bus(interface="virtual", channel=channel, ignore_config=True)
     bench = BenchCan(bus, RigSignals())
     bench.start()
+    bench.wait_booted()
     context = RigContext(
         tmp_path, "real", None, "rig.toml", tmp_path, wire_log_dir=tmp_path,
         buses={"main": {"interface": "virtual", "channel": channel}},
     )  # fmt: skip
-    time.sleep(0.15)  # all nodes have booted
     actuator = CanopenPressureActuator(SETTINGS, context)
     try:
         actuator.open()
