@@ -31,7 +31,6 @@ class PlainAxis(pg.AxisItem):
         self._theme = theme
         self._factor = factor
         self.enableAutoSIPrefix(False)
-        self.take_look()
 
     def take_look(self) -> None:
         """Colours and size of text of the present theme."""
@@ -46,7 +45,10 @@ class PlainAxis(pg.AxisItem):
         )
         points = self._theme.font("small").pointSizeF()
         self.labelStyle = {"color": look.muted, "font-size": f"{points:.1f}pt"}
-        self.setLabel(self.labelText)
+        if self.labelText:
+            self.setLabel(self.labelText)
+        else:
+            self.showLabel(False)
         if self.orientation in ("left", "right"):
             self.setWidth(self._theme.px(6))
         else:
@@ -58,7 +60,7 @@ class PlainAxis(pg.AxisItem):
         self.take_look()
 
     def _parts(self, size: float) -> float:
-        return size / self._theme.px(3.5 if self.orientation in ("left", "right") else 9)
+        return size / self._theme.px(2.25 if self.orientation in ("left", "right") else 9)
 
     def tickSpacing(self, minVal: float, maxVal: float, size: float) -> list[tuple[float, float]]:
         """One level of ticks."""

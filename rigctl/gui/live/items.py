@@ -176,7 +176,7 @@ class BoxesItem(ViewItem):
         for box, minor in self._boxes:
             style = Qt.PenStyle.DotLine if minor else Qt.PenStyle.SolidLine
             if not minor:
-                painter.setPen(pen("#000000", 3.0))
+                painter.setPen(pen("#000000", 2.0))
                 painter.drawRect(box)
             painter.setPen(pen("#ffffff", 1.0, style))
             painter.drawRect(box)

@@ -1,8 +1,8 @@
 """The common plot of the live view: header with value and read-out, calm axes, mouse on the time axis.
 
-Job: pyqtgraph's plot with everything switched off that moves by itself; wheel and drag ask the shared
-group for another stretch; cursors; words when there is nothing to see. Not its job: what is drawn
-(subclasses), menu and pictures (`tools`).
+Job: a graph in which nothing moves by itself; wheel and drag ask the shared group for another stretch;
+cursors; words when there is nothing to see. Not its job: what is drawn (subclasses), menu and pictures
+(`tools`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWi
 
 from rigctl.gui.live.axes import PlainAxis, RigTimeAxis
 from rigctl.gui.live.data import LiveData
+from rigctl.gui.live.graph import Graph
 from rigctl.gui.live.groups import XGroup
 from rigctl.gui.live.items import pen
 from rigctl.gui.theme import ThemeKeeper
@@ -73,7 +74,7 @@ class LiveViewBox(pg.ViewBox):
 
 
 class LivePlot(QWidget):
-    """One plot with its header. Subclasses add items to `plot` and fill them in `draw`.
+    """One plot with its header. Subclasses add items to `graphics` and fill them in `draw`.
 
     Parameters
     ----------
@@ -98,10 +99,7 @@ class LivePlot(QWidget):
         self.x_axis = x_axis or RigTimeAxis("bottom", theme)
         self.y_axis = y_axis or PlainAxis("left", theme)
         self.view = LiveViewBox()
-        self.graphics = pg.PlotWidget(
-            viewBox=self.view, axisItems={"bottom": self.x_axis, "left": self.y_axis}
-        )
-        self.plot: Any = self.graphics.getPlotItem()
+        self.graphics = Graph(self.view, self.x_axis, self.y_axis)
         self._build(title)
         self.view.xChosen.connect(self._choose_x)
         self.view.yChosen.connect(self._choose_y)
@@ -110,20 +108,15 @@ class LivePlot(QWidget):
         self._cursor_lines: list[pg.InfiniteLine] = []  # made when they are wanted: each costs time per frame
         group.followed.connect(self._end_manual_y)
         theme.changed.connect(self.take_look)
-        self.plot.scene().sigMouseMoved.connect(self._on_mouse)
+        self.view.scene().sigMouseMoved.connect(self._on_mouse)
         self.graphics.viewport().installEventFilter(self)
-        self.take_look()
+        self._take_own_look()
 
     menuAsked = Signal(object, QPoint)
     """This plot, and where on the screen: the right button was pressed."""
     resized = Signal()
 
     def _build(self, title: str) -> None:
-        self.plot.hideButtons()
-        self.plot.setMenuEnabled(False)
-        self.plot.setDownsampling(auto=False)
-        self.plot.setClipToView(False)  # items bring what fits the view, and no more
-        self.graphics.setFrameShape(pg.PlotWidget.Shape.NoFrame)
         self.graphics.setMinimumHeight(self.theme.px(6))
         self.title = QLabel(title)
         self.value = QLabel()
@@ -158,6 +151,13 @@ class LivePlot(QWidget):
 
     def take_look(self) -> None:
         """Colours and sizes of the present theme."""
+        self._take_own_look()
+        self.colour()
+
+    def colour(self) -> None:
+        """Give the items the colours of the present theme."""
+
+    def _take_own_look(self) -> None:
         look = self.theme.current
         self.graphics.setBackground(look.plot)
         for axis in (self.x_axis, self.y_axis):
@@ -278,12 +278,15 @@ class LivePlot(QWidget):
 
     def _make_cursor(self, number: int) -> pg.InfiniteLine:
         line = pg.InfiniteLine(
-            angle=90, movable=True, label="AB"[number], labelOpts={"position": 0.9, "movable": False}
+            angle=90,
+            movable=True,
+            label="AB"[number],
+            labelOpts={"position": 1.0, "anchors": [(0, 0), (0, 0)]},
         )
         line.setZValue(50)
         line.sigDragged.connect(lambda moved: self.group.move_cursor(number, float(moved.value())))
         self._colour_cursor(line)
-        self.plot.addItem(line, ignoreBounds=True)
+        self.graphics.add(line)
         return line
 
     def cursor_colour(self) -> str:
@@ -301,7 +304,7 @@ class LivePlot(QWidget):
         self.cursor_text.setVisible(cursors is not None)
         if cursors is None:
             while self._cursor_lines:
-                self.plot.removeItem(self._cursor_lines.pop())
+                self.graphics.remove(self._cursor_lines.pop())
             return
         if not self._cursor_lines:
             self._cursor_lines = [self._make_cursor(number) for number in (0, 1)]

@@ -27,6 +27,8 @@ from rigctl.gui.theme import ThemeKeeper
 
 SCALES_DB = ((0, 80), (10, 100), (30, 120))
 _FRAME_HZ = 350.0
+_FRAME_PX = 6.0
+"""A frame around an event keeps this distance from its line, in Hz and on the screen."""
 
 
 def colour_table(low_db: float, high_db: float) -> list[int]:
@@ -45,16 +47,15 @@ class SpectrogramPlot(TimePlot):
     """Level over time and frequency."""
 
     def __init__(self, theme: ThemeKeeper, group: TimeGroup) -> None:
-        self._scale_db: tuple[int, int] = SCALES_DB[1]
-        self._legend: list[QLabel] = []
         super().__init__(theme, group, "", y_axis=PlainAxis("left", theme, factor=1e-3))
         self.title.setText(self.tr("Spectrogram (kHz, dB)"))
+        self._scale_db: tuple[int, int] = SCALES_DB[1]
         self._picture = PictureItem()
         self._outside = OutsideItem("#000000", 110, vertical=False)
         self._outside.edge = pen("#ffffff", 1.0, Qt.PenStyle.DashLine)
         self._boxes = BoxesItem()
         for item in (self._picture, self._outside, self._boxes):
-            self.plot.addItem(item, ignoreBounds=True)
+            self.graphics.add(item)
         self._scale = QToolButton()
         self._scale.setAutoRaise(True)
         self._scale.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
@@ -68,13 +69,11 @@ class SpectrogramPlot(TimePlot):
         self._legend = [QLabel(), QLabel()]
         for widget in (self._legend[0], self._scale, self._legend[1]):
             self.header.addWidget(widget)
-        self.set_scale(*self._scale_db)
+        self.colour()
 
-    def take_look(self) -> None:
-        """Colours and sizes of the present theme."""
-        super().take_look()
-        if self._legend:
-            self.set_scale(*self._scale_db)
+    def colour(self) -> None:
+        """Colours of the present theme."""
+        self.set_scale(*self._scale_db)
 
     def cursor_colour(self) -> str:
         """To be seen on dark blue and on yellow."""
@@ -118,11 +117,13 @@ class SpectrogramPlot(TimePlot):
         target = QRectF(picture.start_s, picture.low_hz, columns * picture.column_s, rows * picture.row_hz)
         self._picture.set_picture(picture.levels, target)
         self._outside.span = (target.left(), target.right())
+        least_hz = _FRAME_PX * (band_hz[1] - band_hz[0]) / max(self.view.height(), 1.0)
+        half_hz = max(_FRAME_HZ, least_hz)
         self._boxes.set_boxes(
             [
                 (
-                    QRectF(event.start_s, event.frequency_hz - _FRAME_HZ, event.end_s - event.start_s,
-                           2 * _FRAME_HZ),
+                    QRectF(event.start_s, event.frequency_hz - half_hz, event.end_s - event.start_s,
+                           2 * half_hz),
                     event.harmonic,
                 )
                 for event in sound.events()

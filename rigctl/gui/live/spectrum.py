@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pyqtgraph as pg
+from numpy.typing import NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor
 
@@ -20,6 +21,7 @@ from rigctl.gui.live.groups import TimeGroup, XGroup
 from rigctl.gui.live.items import LineItem, OutsideItem, pen
 from rigctl.gui.live.peaks import LiveEvent
 from rigctl.gui.live.plot import LivePlot
+from rigctl.gui.live.ranges import clock_text
 from rigctl.gui.live.sound import LiveSpectrum
 from rigctl.gui.theme import ThemeKeeper
 
@@ -37,14 +39,14 @@ class SpectrumPlot(LivePlot):
     group : XGroup
         Of the frequency axis.
     time : TimeGroup
-        Tells which moment is shown: the newest, or none when an older stretch is looked at.
+        Its cursors, when shown, choose the moments: A, and B as dotted line. Else the newest is shown.
     """
 
     def __init__(self, theme: ThemeKeeper, group: XGroup, time: TimeGroup) -> None:
-        self._time = time
-        self._line: LineItem | None = None
-        self._sound: LiveSpectrum | None = None
         super().__init__(theme, group, "", PlainAxis("bottom", theme, factor=1e-3))
+        self._time = time
+        self._sound: LiveSpectrum | None = None
+        self._shown: NDArray[np.floating] | None = None
         self.title.setText(self.tr("Spectrum (dB re 20 µPa)"))
         self.x_axis.name(self.tr("Frequency (kHz)"))
         self._hold = LineItem(pen(theme.current.line))
@@ -58,17 +60,14 @@ class SpectrumPlot(LivePlot):
             (self._outside, self._hold, self._line, self._threshold, self._threshold_label, self._marks)
         ):
             item.setZValue(order - 10)
-            self.plot.addItem(item, ignoreBounds=True)
+            self.graphics.add(item)
         for label in self._labels:
-            self.plot.addItem(label, ignoreBounds=True)
+            self.graphics.add(label)
             label.hide()
-        self.take_look()
+        self.colour()
 
-    def take_look(self) -> None:
+    def colour(self) -> None:
         """Colours of the present theme."""
-        super().take_look()
-        if self._line is None:
-            return
         look = self.theme.current
         self._line.set_pen(pen(look.sound))
         self._hold.set_pen(pen(look.plot_line, 1.0, Qt.PenStyle.DotLine))
@@ -91,15 +90,38 @@ class SpectrumPlot(LivePlot):
         x = self.group.window(whole)
         self.set_ranges(x, LEVELS_DB)
         self._show_settings(sound, x)
-        if self._line is None or sound is None or sound.spectrum_db is None or sound.hold_db is None:
+        self._shown, second, events = self._moments(data)
+        if sound is None or self._shown is None:
             self._show_events([], x)
-            self.show_hint(self.tr("No sound yet.") if math.isfinite(data.end_s) else "")
+            for line in (self._line, self._hold):
+                line.set_points(np.empty(0), np.empty(0))
+            self.show_hint(self._why_empty(data))
             return
         self.show_hint("")
-        for line, levels in ((self._line, sound.spectrum_db), (self._hold, sound.hold_db)):
-            line.set_points(*_largest(sound.line_hz, levels, x, self.pixels()))
-        going_on = [event for event in sound.events() if event.open]
-        self._show_events(sorted(going_on, key=lambda event: -event.level_db), x)
+        self._line.set_points(*_largest(sound.line_hz, self._shown, x, self.pixels()))
+        second = np.empty(0) if second is None else second
+        self._hold.set_points(*_largest(sound.line_hz, second, x, self.pixels()))
+        self._show_events(sorted(events, key=lambda event: -event.level_db), x)
+
+    def _moments(
+        self, data: LiveData
+    ) -> tuple[NDArray[np.floating] | None, NDArray[np.floating] | None, list[LiveEvent]]:
+        """Levels to be shown, those of the dotted line, and the events at that time."""
+        sound, cursors = data.sound, self._time.cursors
+        if sound is None:
+            return None, None, []
+        if cursors is None:
+            return sound.spectrum_db, sound.hold_db, [event for event in sound.events() if event.open]
+        first, second = (sound.spectrogram.column_db(t_s) for t_s in cursors)
+        events = [event for event in sound.events() if event.start_s <= cursors[0] <= event.end_s]
+        return first, second, events
+
+    def _why_empty(self, data: LiveData) -> str:
+        if not math.isfinite(data.end_s):
+            return ""
+        if self._time.cursors is not None:
+            return self.tr("No sound at cursor A.")
+        return self.tr("No sound yet.")
 
     def _show_settings(self, sound: LiveSpectrum | None, x: tuple[float, float]) -> None:
         if sound is None:
@@ -117,9 +139,9 @@ class SpectrumPlot(LivePlot):
         sound = self._sound
         points: list[tuple[float, float, LiveEvent]] = []
         for event in events:
-            if sound is not None and sound.spectrum_db is not None:
+            if sound is not None and self._shown is not None:
                 line = round(event.frequency_hz / sound.line_hz)
-                near = sound.spectrum_db[max(line - 2, 0) : line + 3]
+                near = self._shown[max(line - 2, 0) : line + 3]
                 points.append((event.frequency_hz, float(near.max()), event))
         self._marks.setData([p[0] for p in points], [p[1] + _ABOVE_DB for p in points])
         wanted = [point for point in points if not point[2].harmonic and x[0] <= point[0] <= x[1]]
@@ -142,20 +164,21 @@ class SpectrumPlot(LivePlot):
             label.setPos(inside, at_db)
 
     def value_text(self, data: LiveData) -> str:
-        """The loudest event that is going on."""
-        events = [] if data.sound is None else [event for event in data.sound.events() if event.open]
-        if not events:
-            return ""
-        loudest = max(events, key=lambda event: event.level_db)
-        words = self.tr("squeal {0}").format(frequency_text(loudest.frequency_hz))
-        return f"<b>▼ {words}</b>"
+        """The loudest event at the shown moment."""
+        cursors = self._time.cursors
+        words = "" if cursors is None else self.tr("at A {0}, dotted: B").format(clock_text(cursors[0], 0.01))
+        events = self._moments(data)[2]
+        if events:
+            loudest = max(events, key=lambda event: event.level_db)
+            squeal = self.tr("squeal {0}").format(frequency_text(loudest.frequency_hz))
+            words = f"<b>▼ {squeal}</b> {words}"
+        return words
 
     def _level(self, frequency_hz: float) -> float:
-        if self._sound is None or self._sound.spectrum_db is None:
+        if self._sound is None or self._shown is None:
             return math.nan
         line = round(frequency_hz / self._sound.line_hz)
-        inside = 0 <= line < len(self._sound.spectrum_db)
-        return float(self._sound.spectrum_db[line]) if inside else math.nan
+        return float(self._shown[line]) if 0 <= line < len(self._shown) else math.nan
 
     def describe(self, x: float, y: float) -> str:
         """Level of the line under the mouse."""
@@ -178,8 +201,8 @@ class SpectrumPlot(LivePlot):
 
 
 def _largest(
-    line_hz: float, levels: np.ndarray, x: tuple[float, float], pixels: int
-) -> tuple[np.ndarray, np.ndarray]:
+    line_hz: float, levels: NDArray[np.floating], x: tuple[float, float], pixels: int
+) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
     """Lines of a stretch; with more than two per pixel, the largest of each group at its own frequency."""
     first = max(int(x[0] / line_hz) - 1, 0)
     stop = min(int(x[1] / line_hz) + 2, len(levels))

@@ -132,7 +132,7 @@ class SpectrogramHistory:
             self._data[(self._stop + np.arange(ahead)) % capacity] = 0
             self._stop += ahead
         steps = (level_db(frames.power[-capacity:]) - LEVEL_LOWEST_DB) / LEVEL_STEP_DB + 1.0
-        steps = np.nan_to_num(np.clip(steps, 1.0, 255.0), nan=0.0)
+        steps = np.nan_to_num(np.clip(np.rint(steps), 1.0, 255.0), nan=0.0)
         at = (self._stop + max(n - capacity, 0) + np.arange(len(steps))) % capacity
         self._data[at] = steps.astype(np.uint8)
         self._stop += n
@@ -163,14 +163,22 @@ class SpectrogramHistory:
             (low - 0.5) * self.line_hz, tall * self.line_hz, np.ascontiguousarray(cells.T),
         )  # fmt: skip
 
+    def column_db(self, t_s: float) -> NDArray[np.floating] | None:
+        """Levels of all lines at a time, to half a decibel; None where there is no frame."""
+        if not np.isfinite(t_s):
+            return None
+        column = int(np.floor((t_s - self._origin_s) / self.hop_s))
+        if not max(self._first, self._stop - len(self._data)) <= column < self._stop:
+            return None
+        steps = self._data[column % len(self._data)]
+        return LEVEL_LOWEST_DB + (steps.astype(np.float32) - 1.0) * LEVEL_STEP_DB if steps.any() else None
+
     def value_db(self, t_s: float, frequency_hz: float) -> float:
         """Level at a time and frequency, to half a decibel; NaN where there is none."""
-        column = int(np.floor((t_s - self._origin_s) / self.hop_s))
-        line = round(frequency_hz / self.line_hz)
-        inside = max(self._first, self._stop - len(self._data)) <= column < self._stop
-        if not inside or not 0 <= line < self._data.shape[1]:
+        levels, line = self.column_db(t_s), round(frequency_hz / self.line_hz)
+        if levels is None or not 0 <= line < len(levels):
             return float("nan")
-        return to_db(int(self._data[column % len(self._data), line]))
+        return float(levels[line])
 
     def copy(self) -> SpectrogramHistory:
         """Independent copy, for a frozen display."""

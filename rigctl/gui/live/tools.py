@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from PySide6.QtCore import QPoint, QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from rigctl.gui.format import quantity_text
@@ -118,8 +118,8 @@ class PlotTools(QWidget):
             action.setChecked(shown)
             action.toggled.connect(lambda on, key=key: self.shownChanged.emit(key, on))
 
-    def menu_of(self, plot: QWidget, where: QPoint) -> QMenu:
-        """Show the menu of the right button for one plot."""
+    def menu_of(self, plot: QWidget) -> QMenu:
+        """Menu of the right button for one plot; it goes when it is closed."""
         menu = QMenu(plot)
         menu.addAction(self.tr("Follow")).triggered.connect(self._on_follow)
         for words, button in (
@@ -133,5 +133,4 @@ class PlotTools(QWidget):
         menu.addAction(self.tr("Copy picture")).triggered.connect(lambda: self.copyPressed.emit(plot))
         menu.addAction(self.tr("Save picture…")).triggered.connect(lambda: self.savePressed.emit(plot))
         menu.aboutToHide.connect(menu.deleteLater)
-        menu.popup(where)
         return menu

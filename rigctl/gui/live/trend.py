@@ -97,17 +97,15 @@ class TrendRow(TimePlot):
     def __init__(self, theme: ThemeKeeper, group: TimeGroup, spec: RowSpec) -> None:
         self.spec = spec
         self.unit, self.decimals = spec.unit, spec.decimals
+        super().__init__(theme, group, f"{spec.title} ({spec.unit})" if spec.unit else spec.title)
         self.channels: list[str] = [spec.row]
         self._lines: list[LineItem] = []
-        self._setpoint: LineItem | None = None
-        self._limits: LimitItem | None = None
         self._range = CalmRange(spec.least, zero=spec.row != "temperatures")
-        super().__init__(theme, group, f"{spec.title} ({spec.unit})" if spec.unit else spec.title)
         self._limits = LimitItem(theme.current.red)
         self._setpoint = LineItem(pen(theme.current.blue, 3.0))
         for item, order in ((self._limits, -10), (self._setpoint, -5)):
             item.setZValue(order)
-            self.plot.addItem(item, ignoreBounds=True)
+            self.graphics.add(item)
         self.set_channels(self.channels)
 
     def set_channels(self, channels: list[str]) -> None:
@@ -116,28 +114,25 @@ class TrendRow(TimePlot):
         while len(self._lines) < len(channels):
             line = LineItem(pen("#000000"))
             self._lines.append(line)
-            self.plot.addItem(line, ignoreBounds=True)
+            self.graphics.add(line)
         while len(self._lines) > len(channels):
-            self.plot.removeItem(self._lines.pop())
-        self.take_look()
+            self.graphics.remove(self._lines.pop())
+        self.colour()
 
-    def take_look(self) -> None:
+    def colour(self) -> None:
         """Colours of the present theme."""
-        super().take_look()
         look = self.theme.current
         styles = (Qt.PenStyle.SolidLine, Qt.PenStyle.DashLine, Qt.PenStyle.DotLine)
         for number, line in enumerate(self._lines):
             colour = look.series.get(self.channels[number], look.temperature)
             line.set_pen(pen(colour, 1.0, styles[number % len(styles)]))
-        if self._limits is not None and self._setpoint is not None:
-            self._limits.colour = look.red
-            self._setpoint.set_pen(pen(look.blue, 3.0))
+        self._limits.colour = look.red
+        self._setpoint.set_pen(pen(look.blue, 3.0))
 
     def set_limits(self, band: tuple[float, float] | None) -> None:
         """Limits of the row's quantity."""
-        if self._limits is not None:
-            self._limits.band = band
-            self._limits.update()
+        self._limits.band = band
+        self._limits.update()
 
     def history(self) -> ChannelHistory | None:
         """Of the first channel."""
@@ -160,7 +155,7 @@ class TrendRow(TimePlot):
                 lows.append(found[0])
                 highs.append(found[1])
         series = data.setpoints.get(self.channels[0])
-        if series is not None and self._setpoint is not None:
+        if series is not None:
             t, values = series.course(t0, t1)
             self._setpoint.set_points(t, values)
             valid = values[np.isfinite(values)]
@@ -257,8 +252,11 @@ class TrendPlot(QWidget):
 
     def refresh(self, data: LiveData) -> None:
         """Draw all rows that are shown."""
-        for row in self.plots():
+        empty = not math.isfinite(data.end_s)
+        for number, row in enumerate(self.plots()):
             row.refresh(data)
+            waiting = empty and number == 0
+            row.show_hint(self.tr("No signals yet. They appear when a rig is running.") if waiting else "")
 
     def _show_axis(self) -> None:
         shown = self.plots()

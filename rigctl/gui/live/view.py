@@ -234,7 +234,7 @@ class LiveView(QWidget):
         self.time.choose(middle - half, middle + half)
 
     def _on_menu(self, plot: QWidget, where: QPoint) -> None:
-        self.tools.menu_of(plot, where)
+        self.tools.menu_of(plot).popup(where)
 
     # -- what is shown ----------------------------------------------------------------------------
 

@@ -45,18 +45,15 @@ class WaveformPlot(TimePlot):
     unit, decimals = "Pa", 3
 
     def __init__(self, theme: ThemeKeeper, group: TimeGroup) -> None:
-        self._line: LineItem | None = None
-        self._range = CalmRange(0.02, symmetric=True)
         super().__init__(theme, group, "")
+        self._range = CalmRange(0.02, symmetric=True)
         self.title.setText(self.tr("Sound pressure (Pa)"))
         self._line = LineItem(pen(theme.current.sound))
-        self.plot.addItem(self._line, ignoreBounds=True)
+        self.graphics.add(self._line)
 
-    def take_look(self) -> None:
+    def colour(self) -> None:
         """Colours of the present theme."""
-        super().take_look()
-        if self._line is not None:
-            self._line.set_pen(pen(self.theme.current.sound))
+        self._line.set_pen(pen(self.theme.current.sound))
 
     def history(self) -> ChannelHistory | None:
         """Of the microphone."""
@@ -67,13 +64,13 @@ class WaveformPlot(TimePlot):
         t0, t1 = self.stretch(data)
         history = data.buffer.channels.get(MICROPHONE)
         self.show_hint(sound_hint(self, data))
-        if self._line is not None and history is not None:
+        if history is not None:
             envelope = history.envelope(t0, t1, self.pixels())
             self._line.set_envelope(envelope)
             found = envelope.extremes()
             if found is not None:
                 self._range.follow(*found, time.monotonic())
-        elif self._line is not None:
+        else:
             self._line.set_points(_NO_POINTS, _NO_POINTS)
         self.set_ranges((t0, t1), (self._range.low, self._range.high))
 
@@ -93,22 +90,20 @@ class LevelPlot(TimePlot):
     unit, decimals = "dB", 1
 
     def __init__(self, theme: ThemeKeeper, group: TimeGroup) -> None:
+        super().__init__(theme, group, "")
         self._lines: dict[str, LineItem] = {}
         self._range = CalmRange(40.0)
-        super().__init__(theme, group, "")
         self.title.setText(self.tr("Sound level, fast (dB)"))
         self.x_axis.name(self.tr("Rig time (h:mm:ss)"))
         for name in (LZF, LAF):
             self._lines[name] = LineItem(pen("#000000"))
-            self.plot.addItem(self._lines[name], ignoreBounds=True)
-        self.take_look()
+            self.graphics.add(self._lines[name])
+        self.colour()
 
-    def take_look(self) -> None:
+    def colour(self) -> None:
         """Colours of the present theme."""
-        super().take_look()
-        if self._lines:
-            self._lines[LAF].set_pen(pen(self.theme.current.text, 2.0))
-            self._lines[LZF].set_pen(pen(self.theme.current.plot_line, 1.0))
+        self._lines[LAF].set_pen(pen(self.theme.current.text, 2.0))
+        self._lines[LZF].set_pen(pen(self.theme.current.plot_line, 1.0))
 
     def history(self) -> ChannelHistory | None:
         """Of the A-weighted level."""
