@@ -187,8 +187,7 @@ class ChannelHistory:
         Every valid sample of the stretch lies within the bin at its time; both bounds of a bin are samples.
         A bin that is cut by an end of the stretch is given whole.
         """
-        first, stop = self._slots(from_s, to_s)
-        stop = min(stop + 1, self._stop)
+        first, stop = self._slots(from_s, to_s, 1)
         if stop <= first:
             none = np.empty(0, np.float32)
             return Envelope(from_s, 1.0 / self.rate_hz, none, none)
@@ -222,14 +221,15 @@ class ChannelHistory:
         valid = values[~np.isnan(values)]
         return float(valid.mean(dtype=np.float64)) if len(valid) else float("nan")
 
-    def _slots(self, from_s: float, to_s: float) -> tuple[int, int]:
-        """First slot and the one after the last of a stretch, within what is kept."""
+    def _slots(self, from_s: float, to_s: float, more: int = 0) -> tuple[int, int]:
+        """First slot and the one after the last of a stretch, within what is kept; `more` slots behind it."""
         if self._empty or np.isnan(from_s) or np.isnan(to_s):
             return 0, 0
         oldest, stop = self._oldest(), self._stop
-        low = np.clip((from_s - self._origin_s) * self.rate_hz, oldest, stop)
-        high = np.clip((to_s - self._origin_s) * self.rate_hz, oldest, stop)
-        return int(np.floor(low)), int(np.ceil(high))
+        low, high = (
+            np.clip((t_s - self._origin_s) * self.rate_hz, oldest - 2.0, stop + 2.0) for t_s in (from_s, to_s)
+        )
+        return max(int(np.floor(low)), oldest), min(int(np.ceil(high)) + more, stop)
 
     @staticmethod
     def _take(ring: NDArray[np.float32], begin: int, end: int) -> NDArray[np.float32]:

@@ -116,6 +116,7 @@ def test_asking_an_empty_history_or_endless_times_is_harmless():
         assert len(history.envelope(np.inf, np.inf, 10).low) <= 1
         history.append(0.0, np.ones(10))
     assert history.extremes(-np.inf, np.inf) == (1.0, 1.0)
+    assert history.extremes(-5.0, -1.0) is None and history.extremes(1.0, 2.0) is None
 
 
 def test_strided_samples_are_held():
