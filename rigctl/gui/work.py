@@ -140,8 +140,11 @@ class Work(QObject):
         self._threads.shutdown(wait=True, cancel_futures=True)
         for pool in self._processes.values():
             processes = list((pool._processes or {}).values())
+            keeper: Any = pool._executor_manager_thread
             pool.shutdown(wait=False, cancel_futures=True)
             for process in processes:
                 process.terminate()
                 process.join(2.0)
+            if keeper is not None:  # it ends when it sees that the worker is gone
+                keeper.join(2.0)
         self._processes.clear()

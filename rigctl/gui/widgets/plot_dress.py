@@ -29,9 +29,9 @@ def dress(plot: pg.PlotWidget, theme: ThemeKeeper, x_name: str, y_name: str) -> 
         axis.setPen(pg.mkPen(t.plot_line))
         axis.setTextPen(pg.mkPen(t.text))
         axis.setTickFont(theme.font("small"))
-        axis.enableAutoSIPrefix(False)
         axis.label.setFont(theme.font("normal"))
-        axis.setLabel(name, color=t.text)
+        axis.setLabel(name, siPrefixEnableRanges=(), color=t.text)
+        axis.enableAutoSIPrefix(False)
     item.getAxis("left").setWidth(theme.px(8))
     item.getAxis("bottom").setHeight(theme.px(5.5))
 

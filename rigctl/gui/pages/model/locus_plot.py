@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QGraphicsRectItem
 
 from rigctl.gui.format import frequency_text, quantity_text
 from rigctl.gui.pages.model.data import LocusLines, Pole, Poles
@@ -19,7 +20,6 @@ from rigctl.gui.pages.model.words import pole_text, value_text
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.plot_dress import dress
 
-_FAR = 1e9
 #: reach of a pick and of the read-out of a path, in steps of the grid
 _REACH, _NEAR = 2.5, 1.25
 _LABELS = 3
@@ -47,8 +47,7 @@ class LocusPlot(pg.PlotWidget):
         item.showGrid(x=True, y=True, alpha=0.12)
         item.setClipToView(True)
         item.setDownsampling(auto=False)
-        self._stable = pg.LinearRegionItem((-_FAR, 0.0), movable=False)
-        self._unstable = pg.LinearRegionItem((0.0, _FAR), movable=False)
+        self._stable, self._unstable = QGraphicsRectItem(), QGraphicsRectItem()
         self._axis = pg.InfiniteLine(0.0, angle=90)
         self._paths = pg.PlotCurveItem(connect="finite", antialias=True)
         self._starts = pg.ScatterPlotItem(pxMode=True)
@@ -86,8 +85,7 @@ class LocusPlot(pg.PlotWidget):
         amber.setAlpha(48)
         for region, colour in ((self._stable, grey), (self._unstable, amber)):
             region.setBrush(colour)
-            for line in region.lines:
-                line.setPen(pg.mkPen(None))
+            region.setPen(pg.mkPen(None))
         self._axis.setPen(pg.mkPen(t.text, width=1.5))
         self._axis.setHoverPen(pg.mkPen(t.text, width=1.5))
         for text in (*self._texts, *self._halves):
@@ -98,9 +96,12 @@ class LocusPlot(pg.PlotWidget):
         self._draw_poles()
 
     def _place_halves(self) -> None:
-        """Names of the half planes beside the axis, at the top; hidden when it is out of view."""
-        (left, right), (_, top) = self._box.viewRange()
-        for text, seen in zip(self._halves, (left < 0.0 < right,) * 2, strict=True):
+        """The half planes over what is in view; their names beside the axis while it is in view."""
+        (left, right), (bottom, top) = self._box.viewRange()
+        height = top - bottom
+        self._stable.setRect(QRectF(left, bottom, max(min(right, 0.0) - left, 0.0), height))
+        self._unstable.setRect(QRectF(max(left, 0.0), bottom, max(right - max(left, 0.0), 0.0), height))
+        for text, seen in zip(self._halves, (bool(left < 0.0 < right),) * 2, strict=True):
             text.setVisible(seen)
             text.setPos(0.0, top)
 
@@ -201,9 +202,14 @@ class LocusPlot(pg.PlotWidget):
         every = (*self._poles.poles, *self._poles.other)
         shown = [pole for pole in every if pole.frequency_hz < limit_hz] or every
         left = min(-100.0, *(p.real_part_1_s for p in shown))
-        right = max(0.12 * -left, *(1.15 * p.real_part_1_s for p in shown))
+        right = max(0.4 * -left, *(1.15 * p.real_part_1_s for p in shown))
         top = max(p.frequency_hz for p in shown)
         self._box.setRange(xRange=(1.05 * left, right), yRange=(-0.02 * top, 1.08 * top), padding=0.0)
+
+    def sees(self, pole: Pole) -> bool:
+        """Whether a pole is in view."""
+        (left, right), (low, high) = self._box.viewRange()
+        return left <= pole.real_part_1_s <= right and low <= pole.frequency_hz <= high
 
     def show_boundary(self) -> None:
         """A closer look at the modes that couple or come nearest to the boundary."""

@@ -26,7 +26,7 @@ class LocusTab(QWidget):
         super().__init__()
         theme = services.theme
         self._state, self._theme = state, theme
-        self._fresh = True
+        self._fresh, self._wrong, self._pointed = True, "", ""
         self.plot, self.table, self.view = LocusPlot(theme), ModeTable(theme), ModeView(theme)
         self.plot.setObjectName("model-locus")
         self.path, self.under_mouse = ElidedLabel(), ElidedLabel()
@@ -83,7 +83,7 @@ class LocusTab(QWidget):
         state.wrong.connect(self._say_wrong)
         self.plot.picked.connect(state.select)
         self.table.picked.connect(state.select)
-        self.plot.pointed.connect(self._say)
+        self.plot.pointed.connect(self._point)
         self.all_modes.clicked.connect(self.plot.show_all)
         self.squeal.clicked.connect(self.plot.show_squeal)
         self.boundary.clicked.connect(self.plot.show_boundary)
@@ -117,6 +117,8 @@ class LocusTab(QWidget):
         if self._fresh:  # a new brake: afterwards the axes stay as a person has them
             self._fresh = False
             self.plot.show_squeal()
+        if not self._pointed:
+            self._say("")
 
     def _show_locus(self, locus: LocusLines) -> None:
         self.path.setText(self.tr("Path: {0}").format(axis_of(locus.over, self._state.facts)))
@@ -129,15 +131,28 @@ class LocusTab(QWidget):
         self.plot.show_locus(None)
         self.path.setText(self.tr("No path: {0}").format(reason))
 
+    def _point(self, text: str) -> None:
+        self._pointed = text
+        self._say(text)
+
     def _say(self, text: str) -> None:
-        self.under_mouse.setText(
-            text or self.tr("Click a pole: the brake moves in that mode. × start of a path.")
-        )
+        """What is under the mouse; else what is wrong, or what a person can do here."""
+        selected = self._state.selected
+        if self._wrong:
+            text = self._wrong
+        elif not text and selected is not None and not self.plot.sees(selected):
+            text = self.tr("The selected mode lies outside the view. Press [To 5 kHz] or [All].")
+        elif not text:
+            text = self.tr("Click a pole: the brake moves in that mode. × start of a path.")
+        self.under_mouse.setText(text)
 
     def _say_wrong(self, text: str) -> None:
+        if text == self._wrong:
+            return
+        self._wrong = text
         self.under_mouse.setProperty("look", "error" if text else "muted")
         self.under_mouse.style().polish(self.under_mouse)
-        self._say(text)
+        self._say("")
 
     # -- layout -----------------------------------------------------------------------------------
 

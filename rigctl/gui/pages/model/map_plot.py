@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QGraphicsRectItem
 
 from rigctl.gui.format import frequency_text, quantity_text
 from rigctl.gui.pages.model.data import MapAxis, Measured, StabilityMap
@@ -48,7 +49,7 @@ class MapPlot(pg.PlotWidget):
         self._item.setDownsampling(auto=False)
         self._box: Any = self._item.getViewBox()
         scene: Any = self.scene()
-        self._ground = pg.QtWidgets.QGraphicsRectItem()
+        self._ground = QGraphicsRectItem()
         self._image = pg.ImageItem()
         self._bar: Any = pg.ColorBarItem(
             values=(1000.0, 4000.0), colorMap=pg.colormap.get("viridis"), interactive=False, width=12,
@@ -81,8 +82,11 @@ class MapPlot(pg.PlotWidget):
         axis.setTextPen(pg.mkPen(t.text))
         axis.setTickFont(self._theme.font("small"))
         axis.label.setFont(self._theme.font("small"))
+        name = self.tr("Frequency of the unstable mode [Hz]")
+        axis.setLabel(name, siPrefixEnableRanges=(), color=t.text)
         axis.enableAutoSIPrefix(False)
-        axis.setLabel(self.tr("Frequency of the unstable mode [Hz]"), color=t.text)
+        axis.setWidth(self._theme.px(8))
+        self._item.setContentsMargins(0, self._theme.px(1), 0, 0)
         grey = QColor(t.plot_line)
         grey.setAlpha(28)
         self._ground.setBrush(grey)
@@ -178,7 +182,7 @@ class MapPlot(pg.PlotWidget):
         self._marks.setData(spots, symbol="s", size=px(1.4), pen=pg.mkPen(t.text, width=2))
         self._marks_quiet.setData(
             [place[0] for _, place in self._quiet], [place[1] for _, place in self._quiet],
-            symbol="o", size=px(1.1), brush=None, pen=pg.mkPen(t.green, width=2),
+            symbol="o", size=px(1.25), brush=pg.mkBrush(t.plot), pen=pg.mkPen(t.green, width=2),
         )  # fmt: skip
 
     def show_here(self, x: float, y: float) -> None:
@@ -247,7 +251,7 @@ class MapPlot(pg.PlotWidget):
 
 def measured_text(point: Measured) -> str:
     """A measured point in one line."""
-    translate = pg.QtCore.QCoreApplication.translate
+    translate = QCoreApplication.translate
     at = ", ".join((value_text("mu", point.mu), value_text("pressure", point.pressure_bar)))
     if point.frequency_hz is None:
         return translate("model", "Braking {0}: no squeal at {1}").format(point.braking, at)

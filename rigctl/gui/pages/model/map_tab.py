@@ -86,7 +86,6 @@ class MapTab(QWidget):
             (
                 (self.tr("Across"), self.across),
                 (self.tr("Upwards"), self.upwards),
-                (self.tr("Measured s&queal"), self.campaign),
             )
         ):
             label = QLabel(text)
@@ -103,7 +102,13 @@ class MapTab(QWidget):
         self._column.addWidget(self.problem)
         self._column.addWidget(self.plot, 1)
         self._column.addLayout(self._work)
-        self._column.addWidget(self.note)
+        self._measured = QHBoxLayout()
+        label = QLabel(self.tr("Measured s&queal"))
+        label.setBuddy(self.campaign)
+        self._measured.addWidget(label)
+        self._measured.addWidget(self.campaign)
+        self._measured.addWidget(self.note, 1)
+        self._column.addLayout(self._measured)
 
     def _connect(self) -> None:
         for axis in (self.across, self.upwards):
@@ -133,6 +138,7 @@ class MapTab(QWidget):
         self._grid.setHorizontalSpacing(px(2))
         self._grid.setVerticalSpacing(px(0.5))
         self._work.setSpacing(px(1))
+        self._measured.setSpacing(px(1))
         self.progress.setFixedWidth(px(12))
 
     # -- page -------------------------------------------------------------------------------------

@@ -190,6 +190,13 @@ class ModelState(QObject):
         moved = [key for key in OPERATING if self.operating[key] != self.home(key)]
         return [*moved, *self.factors]
 
+    @property
+    def busy(self) -> bool:
+        """Whether answers are still to come."""
+        return any(
+            latest.busy for latest in (*self._readers.values(), self._poles, self._onsets, self._locus)
+        )
+
     # -- modes ------------------------------------------------------------------------------------
 
     def select(self, pole: Pole | None) -> None:

@@ -105,7 +105,7 @@ def _contours(x: Array, y: Array, frequency: Array) -> tuple[tuple[float, tuple[
     from matplotlib.ticker import MaxNLocator
 
     known = frequency[np.isfinite(frequency)]
-    if known.size == 0 or known.max() - known.min() < 1e-3 * known.max():
+    if known.size == 0 or known.max() - known.min() < 2.0:
         return ()
     steep = np.zeros(frequency.shape, dtype=bool)
     for axis in (0, 1):
@@ -113,7 +113,7 @@ def _contours(x: Array, y: Array, frequency: Array) -> tuple[tuple[float, tuple[
         ends = [(slice(None),) * axis + (part,) for part in (slice(None, -1), slice(1, None))]
         for end in ends:
             steep[end] |= jump
-    levels = MaxNLocator(_MOST_CONTOURS).tick_values(known.min(), known.max())
+    levels = MaxNLocator(_MOST_CONTOURS, integer=True).tick_values(known.min(), known.max())
     masked = np.ma.masked_invalid(np.where(steep, np.nan, frequency))
     drawn = Figure().subplots().contour(x, y, masked, levels=levels)
     found = []

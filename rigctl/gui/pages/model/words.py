@@ -124,14 +124,14 @@ def now_text(setting: Setting, poles: tuple[Pole, ...]) -> str:
 
 
 def pole_text(pole: Pole) -> str:
-    """A pole in one line: "Mode 5 · 2143 Hz · +3.1 1/s · damping −0.02 % · unstable"."""
+    """A pole in one line: "Mode 5 · unstable · 2143 Hz · damping −0.02 % · 3.1 1/s"."""
     translate = QCoreApplication.translate
     return translate("model", "Mode {0} · {1} · {2} · damping {3} · {4}").format(
         pole.number,
-        frequency_text(pole.frequency_hz),
-        quantity_text(pole.real_part_1_s, "1/s", 1),
-        quantity_text(100.0 * pole.damping_ratio, "%", 2),
         state_word(pole),
+        frequency_text(pole.frequency_hz),
+        quantity_text(100.0 * pole.damping_ratio, "%", 2),
+        quantity_text(pole.real_part_1_s, "1/s", 1),
     )
 
 
@@ -188,8 +188,8 @@ def rule_text(rule: RankingRule) -> str:
     """How verdicts are made."""
     text = QCoreApplication.translate(
         "model",
-        "Gain: the sum of real parts below {0} kHz falls at every friction from {1} to {2} by more than {3} % "
-        "of their mean. Harm: a real part rises by more than {4} % of itself. "
+        "Gain: the sum of real parts below {0} kHz falls at every friction from {1} to {2} by more than "
+        "{3} % of their mean. Harm: a real part rises by more than {4} % of itself. "
         "Onset: moves by more than {5} %.",
     )
     return text.format(
