@@ -174,8 +174,11 @@ class AlarmsTab(QWidget):
             header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
         for column in (3, 4):
             header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
-        theme.changed.connect(lambda: pad_cells(self.table, theme))
-        pad_cells(self.table, theme)
+        theme.changed.connect(self._restyle)
+        self._restyle()
+
+    def _restyle(self) -> None:
+        pad_cells(self.table, self._services.theme)
 
     def activated(self) -> None:
         """Shown."""

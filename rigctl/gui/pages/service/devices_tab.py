@@ -106,6 +106,11 @@ class DeviceCard(Panel):
                     part.setText(text)
 
 
+def test_command(rig: Path) -> list[str]:
+    """The same as ``rigctl devices test RIG --json``."""
+    return [sys.executable, "-m", "rigctl.app.cli", "devices", "test", str(rig), "--json"]
+
+
 def _escaped(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
@@ -165,11 +170,11 @@ class DevicesTab(QWidget):
         self._refresh.setInterval(_REFRESH_MS)
         self._refresh.timeout.connect(self._show_values)
         rig = services.rig
-        rig.attached.connect(lambda _session: self._from_session())
-        rig.detached.connect(lambda _why: self._from_session())
+        rig.attached.connect(self._on_session)
+        rig.detached.connect(self._on_session)
         rig.stateChanged.connect(self._on_state)
         rig.recordsAdded.connect(self._on_records)
-        self._theme.changed.connect(lambda: self._show_rows(self._rows))
+        self._theme.changed.connect(self._restyle)
 
     # -- life ------------------------------------------------------------------------------------
 
@@ -196,6 +201,12 @@ class DevicesTab(QWidget):
         for choice in choices:
             if not choice.problem:
                 self.rig.addItem(choice.name, choice.path)
+
+    def _restyle(self) -> None:
+        self._show_rows(self._rows)
+
+    def _on_session(self, _session_or_why: Any) -> None:
+        self._from_session()
 
     # -- from the session ------------------------------------------------------------------------
 
@@ -256,8 +267,9 @@ class DevicesTab(QWidget):
 
     def _start(self, rig: Path) -> None:
         process = QProcess(self)
-        process.setProgram(sys.executable)
-        process.setArguments(["-m", "rigctl.app.cli", "devices", "test", str(rig), "--json"])
+        program, *arguments = test_command(rig)
+        process.setProgram(program)
+        process.setArguments(arguments)
         process.finished.connect(self._on_finished)
         process.errorOccurred.connect(self._on_process_error)
         self._process = process

@@ -72,6 +72,9 @@ class HeatView(Procedure):
         """See `Procedure`."""
         return self._facts
 
+    def _restyle(self) -> None:
+        self.live.setFont(self.theme.font("large"))
+
     # -- build -----------------------------------------------------------------------------------
 
     def _steps(self) -> QWidget:
@@ -91,7 +94,7 @@ class HeatView(Procedure):
         self.live = label("")
         self.live.setObjectName("heat-live")
         self.live.setFont(self.theme.font("large"))
-        self.theme.changed.connect(lambda: self.live.setFont(self.theme.font("large")))
+        self.theme.changed.connect(self._restyle)
         self.truth = QPushButton(self.tr("Contact thermometer of the &simulated rig"))
         self.truth.setObjectName("heat-truth")
         self.truth.setToolTip(self.tr("True temperature of the rub surface, from the fault laboratory"))

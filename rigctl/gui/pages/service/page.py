@@ -55,8 +55,8 @@ class ServicePage(Page):
         layout.addWidget(self.tabs)
         self._active: Any = None
         self.tabs.currentChanged.connect(lambda _index: self._switch())
-        services.rig.attached.connect(lambda _session: self._show_laboratory())
-        services.rig.detached.connect(lambda _why: self._show_laboratory())
+        services.rig.attached.connect(self._show_laboratory)
+        services.rig.detached.connect(self._show_laboratory)
         if services.alarms is not None:
             services.alarms.changed.connect(self._count_alarms)
         self._show_laboratory()
@@ -83,7 +83,7 @@ class ServicePage(Page):
         self._active = self.tabs.currentWidget()
         self._active.activated()
 
-    def _show_laboratory(self) -> None:
+    def _show_laboratory(self, _session_or_why: Any = None) -> None:
         session = self.services.rig.session
         there = session is not None and session.simulated
         self.tabs.setTabVisible(self.tabs.indexOf(self.laboratory), there)

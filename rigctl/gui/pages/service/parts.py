@@ -64,18 +64,19 @@ def pad_cells(table: QTableView, theme: ThemeKeeper) -> None:
     )
 
 
-def thin_bar(theme: ThemeKeeper) -> QProgressBar:
-    """A thin bar of progress that keeps its place while it is empty."""
-    bar = QProgressBar()
-    bar.setRange(0, 100)
-    bar.setTextVisible(False)
+class ThinBar(QProgressBar):
+    """A thin bar of progress, 0 to 100, that keeps its place while it is empty."""
 
-    def restyle() -> None:
-        bar.setFixedHeight(theme.px(0.75))
+    def __init__(self, theme: ThemeKeeper) -> None:
+        super().__init__()
+        self._theme = theme
+        self.setRange(0, 100)
+        self.setTextVisible(False)
+        theme.changed.connect(self._restyle)
+        self._restyle()
 
-    theme.changed.connect(restyle)
-    restyle()
-    return bar
+    def _restyle(self) -> None:
+        self.setFixedHeight(self._theme.px(0.75))
 
 
 class Panel(QFrame):

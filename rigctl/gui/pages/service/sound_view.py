@@ -24,7 +24,7 @@ from rigctl.core.channels import MICROPHONE
 from rigctl.core.units import REFERENCE_PRESSURE_PA
 from rigctl.gui.format import number_text, quantity_text, signed_text
 from rigctl.gui.pages.service.form import FactsForm
-from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, label, thin_bar
+from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import Reading
 from rigctl.gui.pages.service.sound_guide import RECORD_S, SoundGuide, read_and_evaluate
@@ -85,6 +85,9 @@ class SoundView(Procedure):
         """See `Procedure`."""
         return self._facts
 
+    def _restyle(self) -> None:
+        self.live.setFont(self.theme.font("large"))
+
     # -- build -----------------------------------------------------------------------------------
 
     def _steps(self) -> QWidget:
@@ -105,7 +108,7 @@ class SoundView(Procedure):
         self.live.setObjectName("sound-live")
         self.live.setFont(self.theme.font("large"))
         self.live_note = label("", "muted", wrap=True)
-        self.theme.changed.connect(lambda: self.live.setFont(self.theme.font("large")))
+        self.theme.changed.connect(self._restyle)
         self.aid = QCheckBox(self.tr("Calibrator of the &simulated rig"))
         self.aid.setObjectName("sound-aid")
         self.aid.setToolTip(self.tr("The fault laboratory puts a calibrator of that level on the microphone"))
@@ -116,7 +119,7 @@ class SoundView(Procedure):
         self.take.setProperty("look", "primary")
         self.take.setToolTip(self.tr("Record the tone and find the sensitivity; once for each level"))
         self.take.clicked.connect(self._take)
-        self.bar = thin_bar(self.theme)
+        self.bar = ThinBar(self.theme)
         panel = Panel(self.theme)
         panel.body.addWidget(
             label(

@@ -24,7 +24,7 @@ from rigctl.core.errors import RigctlError
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.lever_form import LeverForm
-from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, label, thin_bar
+from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import MEASURE_S, Reading
 from rigctl.gui.pages.service.torque_guide import CHANNELS, TorqueGuide
@@ -73,6 +73,9 @@ class TorqueView(Procedure):
         """See `Procedure`."""
         return self._facts
 
+    def _restyle(self) -> None:
+        self.order.setFont(self.theme.font("large"))
+
     # -- build -----------------------------------------------------------------------------------
 
     def _inputs(self) -> QWidget:
@@ -111,7 +114,7 @@ class TorqueView(Procedure):
         self.order = label(wrap=True)
         self.order.setObjectName("torque-order")
         self.order.setFont(self.theme.font("large"))
-        self.theme.changed.connect(lambda: self.order.setFont(self.theme.font("large")))
+        self.theme.changed.connect(self._restyle)
         self.take = QPushButton(self.tr("&Take the reading"))
         self.take.setObjectName("torque-take")
         self.take.setProperty("look", "primary")
@@ -128,7 +131,7 @@ class TorqueView(Procedure):
         self.repeat.setObjectName("torque-repeat")
         self.repeat.setToolTip(self.tr("Take the reading of the selected row again"))
         self.repeat.clicked.connect(self._repeat)
-        self.bar = thin_bar(self.theme)
+        self.bar = ThinBar(self.theme)
         self.table = PlainTable(
             self.theme,
             (self.tr("Side"), self.tr("kg"), self.tr("N·m"), self.tr("Reading"), self.tr("Scatter")),
