@@ -55,7 +55,7 @@ def friction_raises_squeal(evidence: Evidence) -> Claim:
         "A high coefficient of friction increases the probability of squeal.",
         "some eigenvalue loses damping from mu 0.4 to 0.6; holds if the smallest damping ratio falls",
         {
-            "pairs_that_lose_damping": int((robust.basic[kept] > 0.0).sum()),
+            "pairs_that_lose_damping": int(robust.loses_damping[kept].sum()),
             "pairs": int(kept.size),
             "maximum_1_s": largest,
             "maximum_below_5_khz_1_s": float(robust.basic[kept][evidence.low].max(initial=-np.inf)),

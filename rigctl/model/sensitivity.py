@@ -221,7 +221,7 @@ def robustness_facts(found: Robustness, below_hz: float) -> dict[str, Any]:
         f"maximum_below_{below_hz / 1e3:g}_khz_at_hz": None
         if low is None
         else float(found.frequencies_hz[low]),
-        "pairs_that_lose_damping": int((found.basic[kept] > 0.0).sum()),
+        "pairs_that_lose_damping": int(found.loses_damping[kept].sum()),
         "pairs": int(kept.size),
         "sum_of_all_values_1_s": float(found.basic.sum()),
         "modes_of_uncertain_identity": int(

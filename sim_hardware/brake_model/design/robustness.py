@@ -21,6 +21,7 @@ from sim_hardware.brake_model.design.variations import Variation
 from sim_hardware.brake_model.linear import MU, LinearModel
 
 Array = NDArray[np.float64]
+ROUNDING = 1e-9  # of the largest value
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,11 @@ class Robustness:
     def frequencies_hz(self) -> Array:
         """(m,) of the modes of the basic design at `low`."""
         return self.resolved.frequencies_hz
+
+    @property
+    def loses_damping(self) -> NDArray[np.bool_]:
+        """(m,) modes of the basic design that lose damping, by more than rounding can make of no change."""
+        return self.basic > ROUNDING * np.nanmax(np.abs(self.basic))
 
     @property
     def reference(self) -> float:
