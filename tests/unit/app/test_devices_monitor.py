@@ -90,9 +90,21 @@ def test_ctrl_c_ends_it_and_closes_the_devices(
 ):
     calls: list[str] = []
     monkeypatch.setattr(devices_drivers.GoodDrive, "calls", calls)
-    threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    file = RigFile.read(write_rig(drive="gooddrive"))
-    failed = monitor.watch(file, ["drive"], tmp_path, every_s=0.05, duration_s=30, wire_log_dir=None)
+
+    def press() -> None:
+        wait_for(lambda: calls.count("diagnose 0") > 2)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    # who runs the tests in the background of a shell ignores it
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    person = threading.Thread(target=press)
+    person.start()
+    try:
+        file = RigFile.read(write_rig(drive="gooddrive"))
+        failed = monitor.watch(file, ["drive"], tmp_path, every_s=0.05, duration_s=None, wire_log_dir=None)
+    finally:
+        signal.signal(signal.SIGINT, before)
+        person.join()
     assert not failed
     assert calls[0] == "open"
     assert calls[-1] == "close"
