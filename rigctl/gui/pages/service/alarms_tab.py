@@ -188,7 +188,8 @@ class AlarmsTab(QWidget):
         """Another tab."""
 
     def _show(self) -> None:
-        alarms = [] if self._alarms is None else list(reversed(self._alarms.alarms))
+        alarms = [] if self._alarms is None else self._alarms.alarms
+        alarms.sort(key=lambda alarm: alarm.last_utc, reverse=True)
         if self.only_open.isChecked():
             alarms = [alarm for alarm in alarms if alarm.open]
         self.model.show_alarms(alarms)

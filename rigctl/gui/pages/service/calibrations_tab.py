@@ -140,7 +140,6 @@ class CalibrationsTab(QWidget):
             cards.addWidget(card, 1)
         heads = (
             self.tr("Date"), self.tr("Quantity"), self.tr("Result"), self.tr("Operator"), self.tr("Due"),
-            self.tr("File"),
         )  # fmt: skip
         self.table = PlainTable(self.theme, heads, stretch=2)
         self.table.setObjectName("calibrations-table")
@@ -213,7 +212,6 @@ class CalibrationsTab(QWidget):
                 (
                     f"{k.calibration.date.astimezone():%Y-%m-%d %H:%M}", k.calibration.quantity.value,
                     result_text(k.calibration), k.calibration.operator, k.calibration.due.isoformat(),
-                    k.path.name,
                 )
                 for k in self._kept
             ]

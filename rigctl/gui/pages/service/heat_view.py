@@ -12,6 +12,7 @@ from typing import Any
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import (
     QButtonGroup,
+    QCheckBox,
     QHBoxLayout,
     QPushButton,
     QRadioButton,
@@ -44,6 +45,8 @@ class HeatView(Procedure):
         super().__init__(services, session, folder)
         self.headline.setText(self.tr("Emissivity by contact thermometer"))
         self.guide = HeatGuide()
+        self._truths: list[float] = []
+        self._reading: Reading | None = None
         self._facts = FactsForm(
             self.theme, services.settings, "emissivity", self.tr("Contact thermometer"), days=180
         )
@@ -95,12 +98,15 @@ class HeatView(Procedure):
         self.live.setObjectName("heat-live")
         self.live.setFont(self.theme.font("large"))
         self.theme.changed.connect(self._restyle)
-        self.truth = QPushButton(self.tr("Contact thermometer of the &simulated rig"))
-        self.truth.setObjectName("heat-truth")
-        self.truth.setToolTip(self.tr("True temperature of the rub surface, from the fault laboratory"))
-        self.truth.setVisible(self.laboratory is not None)
-        if self.laboratory is not None:
-            self.truth.clicked.connect(self._ask_truth)
+        self.aid = QCheckBox(self.tr("Contact thermometer of the &simulated rig"))
+        self.aid.setObjectName("heat-aid")
+        self.aid.setToolTip(
+            self.tr("True temperature of the rub surface meanwhile, from the fault laboratory")
+        )
+        self.aid.setVisible(self.laboratory is not None)
+        self.aid.setChecked(self.laboratory is not None)
+        self.aid.toggled.connect(self.contact.setDisabled)
+        self.contact.setDisabled(self.aid.isChecked())
         self.take = QPushButton(self.tr("&Take the pair"))
         self.take.setObjectName("heat-take")
         self.take.setProperty("look", "primary")
@@ -120,7 +126,7 @@ class HeatView(Procedure):
         )
         panel.body.addWidget(self._facts)
         panel.body.addWidget(form)
-        panel.body.addWidget(self.truth)
+        panel.body.addWidget(self.aid)
         panel.body.addWidget(self.live)
         panel.body.addWidget(self.take)
         return panel
@@ -172,24 +178,44 @@ class HeatView(Procedure):
         value = None if reading is None else reading.mean
         self.live.setText(self.tr("Pyrometer {0}").format(quantity_text(value, "°C", 1)))
 
-    def _ask_truth(self, _checked: bool = False) -> None:
-        if self.laboratory is not None:
-            self.laboratory.ask("status")
-
-    def _on_truth(self, answer: dict[str, Any]) -> None:
-        self.contact.setValue(round(float(answer["truth"]["disc_degc"]), 1))
-
     def _take(self) -> None:
+        if self.sampler.busy or self._reading is not None:
+            return
+        self.say("")
+        self._truths = []
+        if self.laboratory is not None and self.aid.isChecked():
+            self.take.setEnabled(False)
+            self.laboratory.ask("status")
+            return
         self.contact.setError("")  # shows what is wrong with the number, if anything
         if self.contact.value() is None:
             self.contact.setFocus()
             return
-        self.say("")
+        self._measure()
+
+    def _on_truth(self, answer: dict[str, Any]) -> None:
+        """Before and after the pyrometer's mean: the disc cools meanwhile."""
+        self._truths.append(float(answer["truth"]["disc_degc"]))
+        if self._reading is None:
+            self._measure()
+        else:
+            self.contact.setValue(round(sum(self._truths) / len(self._truths), 1))
+            self._take_pair(self._reading)
+
+    def _measure(self) -> None:
         self.take.setEnabled(False)
         self.sampler.measure((DISC_TEMPERATURE,), self._on_read, self._on_failed, MEASURE_S)
 
     def _on_read(self, readings: dict[str, Reading]) -> None:
-        reading, contact = readings[DISC_TEMPERATURE], self.contact.value()
+        if self._truths and self.laboratory is not None:
+            self._reading = readings[DISC_TEMPERATURE]
+            self.laboratory.ask("status")
+        else:
+            self._take_pair(readings[DISC_TEMPERATURE])
+
+    def _take_pair(self, reading: Reading) -> None:
+        self._reading = None
+        contact = self.contact.value()
         if contact is None or reading.mean != reading.mean:
             self._on_failed(self.tr("The pyrometer has no valid reading."))
             return
@@ -198,6 +224,7 @@ class HeatView(Procedure):
         self._show()
 
     def _on_failed(self, why: str) -> None:
+        self._reading = None
         self.say(why, "error")
         self._show_buttons()
 
@@ -246,7 +273,7 @@ class HeatView(Procedure):
 
     def _show_buttons(self) -> None:
         result, _ = self.guide.result()
-        self.take.setEnabled(not self.sampler.busy)
+        self.take.setEnabled(not self.sampler.busy and self._reading is None)
         self.remove.setEnabled(0 <= self.table.currentRow() < len(self.guide.points))
         ready = result is not None and result.acceptable and self._facts.value() is not None
         self.save.setEnabled(ready)

@@ -131,14 +131,20 @@ class JournalTab(QWidget):
         self._make_controls()
         self._make_table()
         theme = services.theme
-        row = QHBoxLayout()
-        row.setSpacing(theme.px(1))
-        for widget in (self.campaign, self.search, self.source, self.kind, self.follow, self.verify):
-            row.addWidget(widget, 1 if widget in (self.campaign, self.search) else 0)
+        first, second = QHBoxLayout(), QHBoxLayout()
+        for row in (first, second):
+            row.setSpacing(theme.px(1))
+        first.addWidget(self.campaign, 1)
+        first.addWidget(self.search, 1)
+        for widget in (self.source, self.kind, self.follow):
+            second.addWidget(widget)
+        second.addStretch(1)
+        second.addWidget(self.verify)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(*(theme.px(1),) * 4)
         layout.setSpacing(theme.px(1))
-        layout.addLayout(row)
+        layout.addLayout(first)
+        layout.addLayout(second)
         layout.addWidget(self.splitter, 1)
         layout.addWidget(self.status)
         self._tail = QTimer(self)
