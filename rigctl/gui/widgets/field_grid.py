@@ -1,7 +1,7 @@
 """Fields under each other: name, input, unit, and below it what is wrong with the input.
 
-Job: one grid for forms of raw texts; faults are shown by the field's place (its key). `PlainEdit` leaves undo and
-redo to the page. Not its job: judging what is typed.
+Job: one grid for forms of raw texts; faults are shown by the field's place (its key). `PlainEdit` leaves
+undo and redo to the page. Not its job: judging what is typed.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ class Notice(QFrame):
         )
 
     def ask(self, words: str, answers: list[Answer]) -> None:
-        """Show words and answers; the last one should do nothing and takes Esc. It replaces what was asked."""
+        """Show words and answers; the last one should do nothing and takes Esc. Replaces what was asked."""
         self.close_notice()
         self.words.setText(words)
         for number, (text, function) in enumerate(answers):

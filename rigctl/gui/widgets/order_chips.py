@@ -5,6 +5,7 @@ Job: `value()` is the order of the keys, outermost first. Not its job: what the 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
@@ -158,7 +159,7 @@ class OrderChips(QWidget):
         painter.setFont(self._theme.font())
         rects = self.chip_rects()
         painter.setPen(self._theme.colour("muted"))
-        for left, right in zip(rects, rects[1:], strict=False):
+        for left, right in itertools.pairwise(rects):
             gap = QRectF(left.right(), 0, right.left() - left.right(), self.height())
             painter.drawText(gap, Qt.AlignmentFlag.AlignCenter, "›")
         for number, rect in enumerate(rects):

@@ -1,7 +1,8 @@
 """A list of numbers, or of rows of numbers, edited like a sheet: typed, pasted, copied; wrong cells framed.
 
-Job: raw texts in cells, one empty row at the end to go on; several numbers typed or pasted at once fill several
-rows. A grouped table has a mark for rows that go on with the one above. Not its job: what the numbers mean.
+Job: raw texts in cells, one empty row at the end to go on; several numbers typed or pasted at once fill
+several rows. A grouped table has a mark for rows that go on with the one above. Not its job: what the
+numbers mean.
 """
 
 from __future__ import annotations
@@ -321,6 +322,9 @@ class ValuesTable(QTableView):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Enter opens a cell; Backspace empties it."""
         current = self.currentIndex()
+        if self.state() == QAbstractItemView.State.EditingState:  # the editor has let the key pass
+            super().keyPressEvent(event)
+            return
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and current.isValid():
             self.edit(current)
             return

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 from hypothesis import strategies as st
 
 from sequences.braking import AXES
@@ -9,7 +11,7 @@ from sequences.program import Program
 
 NUMBER = st.floats(0.01, 200.0, allow_nan=False).map(lambda x: float(f"{x:.6g}"))
 NAMES = st.from_regex(r"[A-Za-z][A-Za-z0-9_ -]{0,20}[A-Za-z0-9]", fullmatch=True).filter(
-    lambda name: name.lower() not in ("con", "prn", "aux", "nul") and not name[:3].lower() in ("com", "lpt")
+    lambda name: name.lower() not in ("con", "prn", "aux", "nul") and name[:3].lower() not in ("com", "lpt")
 )
 
 
@@ -19,7 +21,7 @@ def profiles(draw: st.DrawFn) -> dict:
     return {
         "segments": [
             {"duration_s": draw(st.floats(1.0, 60.0)), "start_rpm": a, "end_rpm": b}
-            for a, b in zip(speeds, speeds[1:], strict=False)
+            for a, b in itertools.pairwise(speeds)
         ]
     }
 
@@ -27,18 +29,23 @@ def profiles(draw: st.DrawFn) -> dict:
 FUNCTIONS = st.one_of(
     st.fixed_dictionaries({"kind": st.just("constant")}),
     st.fixed_dictionaries(
-        {"kind": st.just("ramp"), "amplitude_bar": st.floats(0, 1), "direction": st.sampled_from(["rising", "falling"])}
+        {
+            "kind": st.just("ramp"),
+            "amplitude_bar": st.floats(0, 1),
+            "direction": st.sampled_from(["rising", "falling"]),
+        }
     ),
     st.fixed_dictionaries(
         {
-            "kind": st.sampled_from(["sine", "triangle"]), "amplitude_bar": st.floats(0, 1),
+            "kind": st.sampled_from(["sine", "triangle"]),
+            "amplitude_bar": st.floats(0, 1),
             "frequency_hz": st.floats(0.01, 5),
         }
     ),
     st.fixed_dictionaries(
         {"kind": st.just("steps"), "steps_bar": st.lists(st.floats(-1, 5), min_size=1, max_size=5)}
     ),
-)  # fmt: skip
+)
 
 
 @st.composite

@@ -47,7 +47,7 @@ def test_shipped_programs_round_trip(path: Path) -> None:
     assert not draft.dirty
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(programs())
 def test_draft_program_toml_round_trip(program: Program) -> None:
     draft = ProgramDraft()
@@ -244,5 +244,5 @@ class DraftMachine(RuleBasedStateMachine):
             assert len(set(uids)) == len(uids)
 
 
-DraftMachine.TestCase.settings = settings(max_examples=30, stateful_step_count=25, deadline=None)
+DraftMachine.TestCase.settings = settings(max_examples=15, stateful_step_count=25, deadline=None)
 TestDraftMachine = DraftMachine.TestCase

@@ -14,16 +14,24 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 @pytest.mark.parametrize(
     ("text", "number"),
     [
-        ("12.5", 12.5), ("12,5", 12.5), (" 7 ", 7.0), ("\u22125", -5.0), ("1e3", 1000.0), (".5", 0.5), ("5.", 5.0),
-        ("+4", 4.0), ("\u00a030\u202f", 30.0),
+        ("12.5", 12.5),
+        ("12,5", 12.5),
+        (" 7 ", 7.0),
+        ("\u22125", -5.0),
+        ("1e3", 1000.0),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("+4", 4.0),
+        ("\u00a030\u202f", 30.0),
     ],
-)  # fmt: skip
+)
 def test_one_number(text: str, number: float) -> None:
     assert parse_number(text) == number
 
 
 @pytest.mark.parametrize(
-    "text", ["", " ", "x", "12 bar", "1.234,5", "1,234.5", "1,2,3", "nan", "inf", "1_000", "0x10", "--1", "5-", "1e"]
+    "text",
+    ["", " ", "x", "12 bar", "1.234,5", "1,234.5", "1,2,3", "nan", "inf", "1_000", "0x10", "--1", "5-", "1e"],
 )
 def test_what_is_no_number_is_refused(text: str) -> None:
     assert parse_number(text) is None
@@ -55,6 +63,9 @@ def test_written_numbers_are_read_back_exactly(value: float) -> None:
         ("\n\t\n;", []),
         ("abc", ["abc"]),
         ("5\t\t10", ["5", "10"]),
+        ("5 10;15", ["5", "10", "15"]),
+        ("5 bar", ["5", "bar"]),
+        ("5 bar;6", ["5 bar", "6"]),
     ],
 )
 def test_lists(text: str, cells: list[str]) -> None:

@@ -1,8 +1,8 @@
-"""What is wrong, and at which field: validation errors and the dry run, brought to the place where one types.
+"""What is wrong, and at which field: validation errors and the dry run, where one types.
 
-Job: `Fault` (place, cells, words, remedy), `judge` for one sequence and `judge_program` for the whole, and the
-faults of a dry run. Words name the fields as the page does, not the keys of the file. Not its job: the rules
-themselves (`sequences`), showing (`editor`).
+Job: `Fault` (place, cells, words, remedy), `judge` for one sequence and `judge_program` for the whole, and
+the faults of a dry run. Words name the fields as the page does, not the keys of the file. Not its job: the
+rules themselves (`sequences`), showing (`editor`).
 """
 
 from __future__ import annotations
@@ -39,35 +39,63 @@ _WHOLE_PLACES = {  # what a model as a whole refuses, by kind: the field at whic
     "repeated_name": "name",
     "zero_brakings": "sequences",
 }
-_OWN_WORDS: dict[str, tuple[str, str]] = {
-    "float_type": (QT_TRANSLATE_NOOP("faults", "“{value}” is not a number."),
-                   QT_TRANSLATE_NOOP("faults", "Write for example 12.5, without a unit.")),
-    "int_type": (QT_TRANSLATE_NOOP("faults", "“{value}” is not a whole number."),
-                 QT_TRANSLATE_NOOP("faults", "Write for example 3.")),
-    "missing_number": (QT_TRANSLATE_NOOP("faults", "Nothing is entered here."),
-                       QT_TRANSLATE_NOOP("faults", "Enter a number.")),
-    "empty_list": (QT_TRANSLATE_NOOP("faults", "The list is empty: nothing would be run."),
-                   QT_TRANSLATE_NOOP("faults", "Enter at least one value.")),
-    "empty_temperatures": (QT_TRANSLATE_NOOP("faults", "The list is empty: nothing would be run."),
-                   QT_TRANSLATE_NOOP("faults", "Enter a temperature, or switch the conditioning off.")),
-    "zero_brakings": (QT_TRANSLATE_NOOP("faults", "The program has no braking to run."),
-                      QT_TRANSLATE_NOOP("faults", "Add a sequence, or switch one on.")),
-    "missing_name": (QT_TRANSLATE_NOOP("faults", "A name is missing."),
-                     QT_TRANSLATE_NOOP("faults", "Use letters, digits, “.”, “_”, “-” or blanks.")),
+_OWN_WORDS: dict[str, tuple[object, object]] = {
+    "float_type": (
+        QT_TRANSLATE_NOOP("faults", "“{value}” is not a number."),
+        QT_TRANSLATE_NOOP("faults", "Write for example 12.5, without a unit."),
+    ),
+    "int_type": (
+        QT_TRANSLATE_NOOP("faults", "“{value}” is not a whole number."),
+        QT_TRANSLATE_NOOP("faults", "Write for example 3."),
+    ),
+    "missing_number": (
+        QT_TRANSLATE_NOOP("faults", "Nothing is entered here."),
+        QT_TRANSLATE_NOOP("faults", "Enter a number."),
+    ),
+    "empty_list": (
+        QT_TRANSLATE_NOOP("faults", "The list is empty: nothing would be run."),
+        QT_TRANSLATE_NOOP("faults", "Enter at least one value."),
+    ),
+    "empty_temperatures": (
+        QT_TRANSLATE_NOOP("faults", "The list is empty: nothing would be run."),
+        QT_TRANSLATE_NOOP("faults", "Enter a temperature, or switch the conditioning off."),
+    ),
+    "zero_brakings": (
+        QT_TRANSLATE_NOOP("faults", "The program has no braking to run."),
+        QT_TRANSLATE_NOOP("faults", "Add a sequence, or switch one on."),
+    ),
+    "missing_name": (
+        QT_TRANSLATE_NOOP("faults", "A name is missing."),
+        QT_TRANSLATE_NOOP("faults", "Use letters, digits, “.”, “_”, “-” or blanks."),
+    ),
     "unsafe_name": (
         QT_TRANSLATE_NOOP("faults", "{value} cannot be a name."),
-        QT_TRANSLATE_NOOP("faults", "Use letters, digits, “.”, “_”, “-”, blanks; begin with a letter or digit."),
+        QT_TRANSLATE_NOOP(
+            "faults", "Use letters, digits, “.”, “_”, “-”, blanks; begin with a letter or digit."
+        ),
     ),
-    "no_channels": (QT_TRANSLATE_NOOP("faults", "No channel is recorded."),
-                    QT_TRANSLATE_NOOP("faults", "Tick at least one.")),
-    "soak_exceeds_timeout": (QT_TRANSLATE_NOOP("faults", "A soak of {value} s leaves no time within the time-out of {timeout_s} s."),
-                    QT_TRANSLATE_NOOP("faults", "Raise the time-out or shorten the soak.")),
-    "unequal_lists": (QT_TRANSLATE_NOOP("faults", "Lists of unequal length cannot be run entry by entry."),
-                    QT_TRANSLATE_NOOP("faults", "Make the lists equally long (or of one value), or run all combinations.")),
-    "missing_steps": (QT_TRANSLATE_NOOP("faults", "No step is entered."),
-                      QT_TRANSLATE_NOOP("faults", "Enter offsets from the working point, for example 0 5 −3.")),
-}  # fmt: skip
-_LABELS: dict[str, str] = {  # keys of the file, as texts of the checks name them, and their fields
+    "no_channels": (
+        QT_TRANSLATE_NOOP("faults", "No channel is recorded."),
+        QT_TRANSLATE_NOOP("faults", "Tick at least one."),
+    ),
+    "soak_exceeds_timeout": (
+        QT_TRANSLATE_NOOP(
+            "faults", "A soak of {value} s leaves no time within the time-out of {timeout_s} s."
+        ),
+        QT_TRANSLATE_NOOP("faults", "Raise the time-out or shorten the soak."),
+    ),
+    "unequal_lists": (
+        QT_TRANSLATE_NOOP("faults", "Lists of unequal length cannot be run entry by entry."),
+        QT_TRANSLATE_NOOP(
+            "faults", "Make the lists equally long (or of one value), or run all combinations."
+        ),
+    ),
+    "missing_steps": (
+        QT_TRANSLATE_NOOP("faults", "No step is entered."),
+        QT_TRANSLATE_NOOP("faults", "Enter offsets from the working point, for example 0 5 −3."),
+    ),
+}
+_LABELS: dict[str, object] = {  # keys of the file, as texts of the checks name them, and their fields
     "conditioning.drag_pressure_bar": QT_TRANSLATE_NOOP("faults", "the drag pressure"),
     "conditioning.drag_speed_rpm": QT_TRANSLATE_NOOP("faults", "the drag speed"),
     "conditioning.timeout_s": QT_TRANSLATE_NOOP("faults", "the time-out"),
@@ -208,35 +236,41 @@ def _fault(form: SequenceForm, entry: Mapping[str, Any]) -> Fault:
 def _place(
     form: SequenceForm, kind: str, location: tuple[Any, ...]
 ) -> tuple[str, tuple[tuple[int, int], ...]]:
+    """Field and cells of a fault."""
     head = str(location[0]) if location else ""
-    if head == "speed_profiles" and len(location) > 1:
-        rows = profile_rows(form.speeds)[location[1]]
-        if len(location) > 4:
-            return head, ((rows[location[3]], _SPEED_COLUMNS.get(str(location[4]), 0)),)
-        return head, tuple((row, column) for row in rows for column in range(3))
-    if head in ("temperatures_degc", "pressures_bar") and len(location) > 1:
-        return head, ((int(location[1]), 0),)
-    if head == "recording" and len(location) > 2:
-        return "recording.channels", ((int(location[2]), 0),)
-    if head == "pressure_function" and len(location) > 2:
-        return f"{head}.{location[2]}", ()
-    if kind == "set_point_above_limit":
-        return "temperatures_degc", _cells_above(form.temperatures, parse_number(form.limits.maximum))
+    place, cells = ".".join(str(part) for part in location), ()
     if kind in _WHOLE_PLACES and len(location) < 2:
-        return (head if kind == "empty_list" and head else _WHOLE_PLACES[kind]), ()
-    return ".".join(str(part) for part in location), ()
+        place = head if kind == "empty_list" and head else _WHOLE_PLACES[kind]
+        if kind == "set_point_above_limit":
+            cells = _cells_above(form.temperatures, parse_number(form.limits.maximum))
+    elif head == "speed_profiles" and len(location) > 1:
+        place, cells = head, _speed_cells(form, location)
+    elif head in ("temperatures_degc", "pressures_bar") and len(location) > 1:
+        place, cells = head, ((int(location[1]), 0),)
+    elif head == "recording" and len(location) > 2:
+        place, cells = "recording.channels", ((int(location[2]), 0),)
+    elif head == "pressure_function" and len(location) > 2:  # the kind stands between
+        place = f"{head}.{location[2]}"
+    return place, cells
+
+
+def _speed_cells(form: SequenceForm, location: tuple[Any, ...]) -> tuple[tuple[int, int], ...]:
+    rows = profile_rows(form.speeds)[location[1]]
+    if len(location) > 4:
+        return ((rows[location[3]], _SPEED_COLUMNS.get(str(location[4]), 0)),)
+    return tuple((row, column) for row in rows for column in range(3))
 
 
 def _cells_above(texts: tuple[str, ...], limit: float | None) -> tuple[tuple[int, int], ...]:
     numbers = [parse_number(text) for text in texts]
     return tuple(
-        (row, 0) for row, value in enumerate(numbers) if None not in (value, limit) and value > limit
-    )  # type: ignore[operator]
+        (row, 0) for row, n in enumerate(numbers) if n is not None and limit is not None and n > limit
+    )
 
 
 def _own_words(kind: str, context: Mapping[str, Any]) -> tuple[str, str]:
     words, remedy = _OWN_WORDS[kind]
-    return _tr(words).format(**context), _tr(remedy)
+    return _tr(str(words)).format(**context), _tr(str(remedy))
 
 
 def _words(entry: Mapping[str, Any]) -> tuple[str, str]:
@@ -246,9 +280,14 @@ def _words(entry: Mapping[str, Any]) -> tuple[str, str]:
     return _plain(str(entry["msg"])), _plain(str(context.get("remedy") or ""))
 
 
+def _named(text: str) -> str:
+    """Keys of the file by the names that the fields have on the page."""
+    return _KEYS.sub(lambda found: _tr(str(_LABELS[found[0]])), text)
+
+
 def _plain(text: str) -> str:
-    """The text of a check in the words of the page."""
-    return sentence(_KEYS.sub(lambda found: _tr(_LABELS[found[0]]), text)) if text else ""
+    """The text of a check as a sentence in the words of the page."""
+    return sentence(_named(text)) if text else ""
 
 
 def _merged(faults: tuple[Fault, ...]) -> tuple[Fault, ...]:
@@ -282,7 +321,7 @@ def _rig_fault(problem: Problem, form: SequenceForm) -> Fault:
     else:
         note = _tr("Braking {0}.").format(problem.first_index)
     return Fault(
-        form.uid, _rig_place(problem.key), _plain(words), _plain(problem.remedy), problem.severity,
+        form.uid, _rig_place(problem.key), _named(words) + ".", _plain(problem.remedy), problem.severity,
         _rig_cells(problem, form), note,
     )  # fmt: skip
 

@@ -1,8 +1,8 @@
 """The program that is being edited: texts, what they mean, every earlier state, and what is saved.
 
-Job: `ProgramDraft`, the view-model of the page, in plain Python: changes with undo and redo (snapshots of one
-frozen value), validity and faults, operations on the list of sequences. Not its job: files (`program_file`),
-the dry run (`forecast`), widgets.
+Job: `ProgramDraft`, the view-model of the page, in plain Python: changes with undo and redo (snapshots of
+one frozen value), validity and faults, operations on the list of sequences. Not its job: files
+(`program_file`), the dry run (`forecast`), widgets.
 """
 
 from __future__ import annotations
@@ -233,8 +233,13 @@ def new_sequence(kind: str, channels: dict[str, tuple[float, bool]]) -> Sequence
     if kind == "bedding":
         how = replace(base.conditioning, mode="at_most", tolerance="5", soak="0")
         return replace(
-            base, repeat="30", temperatures=("100",), speeds=(SpeedRow("6", "100", "100"),), pressures=("10",),
-            conditioning=how, ventilator=True,
-        )  # fmt: skip
+            base,
+            repeat="30",
+            temperatures=("100",),
+            speeds=(SpeedRow("6", "100", "100"),),
+            pressures=("10",),
+            conditioning=how,
+            ventilator=True,
+        )
     speeds = (SpeedRow("12", "200", "0"),) if kind == "stop" else (SpeedRow("12", "40", "40"),)
     return replace(base, temperatures=("50", "100"), speeds=speeds, pressures=("10", "20"))

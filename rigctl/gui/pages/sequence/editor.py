@@ -1,7 +1,7 @@
 """Middle of the page: one sequence, its head and its sections, each with what is wrong in it.
 
-Job: `value()` and `setValue()` of a `SequenceForm`; faults at their fields and as marks on the tabs; the way to a
-field. Not its job: judging, keeping (`draft`).
+Job: `value()` and `setValue()` of a `SequenceForm`; faults at their fields and as marks on the tabs; the
+way to a field. Not its job: judging, keeping (`draft`).
 """
 
 from __future__ import annotations

@@ -34,8 +34,10 @@ class EmptyState(QScrollArea):
         self.title = QLabel(self.tr("No program is open"))
         self.words = QLabel(
             self.tr(
-                "A program is a list of sequences: bedding, then for example a matrix of temperatures, speeds and "
-                "pressures. Begin with a new one, change one that comes with rigctl, or drop a program file here."
+                "A program is a list of sequences: bedding, then for example a matrix of temperatures, "
+                "speeds and "
+                "pressures. Begin with a new one, change one that comes with rigctl, or drop a program "
+                "file here."
             )
         )
         self.words.setWordWrap(True)

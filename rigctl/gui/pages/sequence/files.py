@@ -1,13 +1,14 @@
 """New, open, save, save as, recent: files of the page, with every question asked in place.
 
-Job: `ProgramFiles` keeps path and text of the open file and the recent ones; reading and writing run in a thread.
-Not its job: the draft's contents, formats (`program_file`).
+Job: `ProgramFiles` keeps path and text of the open file and the recent ones; reading and writing run in a
+thread. Not its job: the draft's contents, formats (`program_file`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
@@ -51,7 +52,7 @@ class ProgramFiles(QObject):
 
     def recent(self) -> tuple[Path, ...]:
         """Files opened or saved last, newest first, as far as they are still there."""
-        stored = self._services.settings.value(_RECENT, [])
+        stored: Any = self._services.settings.value(_RECENT, [])
         names = [stored] if isinstance(stored, str) else list(stored or [])
         return tuple(path for path in map(Path, names) if path.is_file())
 

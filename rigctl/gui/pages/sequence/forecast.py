@@ -1,11 +1,11 @@
 """What a program will be like on a rig: the dry run, and the course of its first brakings to be drawn.
 
-Job: numbers, computed in the worker process (or at once, when the program is small). Imports no Qt. Not its job:
-when to compute (`forecaster`), drawing (`preview`).
+Job: numbers, computed in the worker process (or at once, when the program is small). Imports no Qt. Not its
+job: when to compute (`forecaster`), drawing (`preview`).
 
 The course follows the duration estimate (`sequences.estimate.ThermalWalk`): a sketch for planning, not a
-simulation of the plant. Between two known temperatures, cooling is drawn as it decays towards the ambient and
-heating as a straight line.
+simulation of the plant. Between two known temperatures, cooling is drawn as it decays towards the ambient
+and heating as a straight line.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from rigctl.config.rig import RigConfig
 from sequences.braking import Braking
 from sequences.check import CheckResult, check_program
 from sequences.estimate import DurationEstimate, LoopOrder, ThermalWalk, loop_order_durations
+from sequences.matrix import brakings
+from sequences.pressure import SinePressure, StepsPressure, TrianglePressure
 from sequences.program import Program
 
 FIRST_BRAKINGS = 60
-_PLAIN_KINDS = ("constant", "ramp")
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def loop_orders(program: Program, sequence: str, rig: RigConfig) -> dict[LoopOrd
 
 
 def courses(program: Program, rig: RigConfig, first: int = FIRST_BRAKINGS) -> dict[str, Course]:
-    """The course of the first brakings of every sequence that is switched on, the disc as left by the one before."""
+    """The course of the first brakings of every sequence that is on, the disc as left by the one before."""
     last = next((s.name for s in reversed(program.sequences) if s.count), "")
     walk = ThermalWalk(rig.capabilities)
     pens: dict[str, _Pen] = {}
@@ -87,6 +88,16 @@ def courses(program: Program, rig: RigConfig, first: int = FIRST_BRAKINGS) -> di
         else:
             walk.step(braking)
     return {name: pen.course(totals[name]) for name, pen in pens.items()}
+
+
+def effort(program: Program) -> int:
+    """How much a forecast computes: brakings walked, and a tenth of the points drawn."""
+    points = 0
+    for sequence in program.sequences:
+        first = next(brakings(sequence), None)
+        if first is not None:
+            points += min(sequence.count, FIRST_BRAKINGS) * len(braking_times(first))
+    return program.count + points // 10
 
 
 @dataclass
@@ -200,11 +211,11 @@ def braking_times(braking: Braking) -> list[float]:
     for segment in braking.speed_profile.segments:
         at_s += segment.duration_s
         times.add(min(at_s, duration_s))
-    if function.kind == "steps":
+    if isinstance(function, StepsPressure):
         share = duration_s / len(function.steps_bar)
         for k in range(1, len(function.steps_bar)):
             times |= {k * share * (1 - 1e-6), k * share * (1 + 1e-9)}
-    elif function.kind not in _PLAIN_KINDS:
+    elif isinstance(function, SinePressure | TrianglePressure):
         points = min(max(24, round(16 * function.frequency_hz * duration_s)), 400)
         times |= {duration_s * k / points for k in range(points + 1)}
     if function.rise_s > 0 and function.kind != "constant":

@@ -1,23 +1,25 @@
-"""When to forecast: after a pause in typing, never two at once, never longer in the event loop than a moment.
+"""When to forecast: after a pause in typing, never two at once, never longer in the event loop than a
+moment.
 
-Job: `Forecaster`, small programs at once, large ones in the worker process, always the newest only. Not its job:
-the numbers (`forecast`).
+Job: `Forecaster`, small programs at once, large ones in the worker process, always the newest only. Not its
+job: the numbers (`forecast`).
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from rigctl.config.rig import RigConfig
-from rigctl.gui.pages.sequence.forecast import Forecast, forecast
+from rigctl.gui.pages.sequence.forecast import Forecast, effort, forecast
 from rigctl.gui.work import Work
 from sequences.program import Program
 
 PAUSE_MS = 200
 AT_ONCE = 300
-"""Brakings of a program that is forecast in the event loop: about 10 ms."""
+"""Effort up to which a program is forecast in the event loop: about 20 ms."""
 
 
 class Forecaster(QObject):
@@ -68,16 +70,18 @@ class Forecaster(QObject):
             return  # when the running one ends, the newest begins
         program, rig = self._wanted
         self._wanted = None
-        if program.count <= AT_ONCE:
+        if program.count <= AT_ONCE and effort(program) <= AT_ONCE:
             self._finish(forecast(program, rig))
             return
         self._running = True
-        self._work.in_process(forecast, program, rig, done=self._on_done, failed=partial(self._on_failed))
+        self._work.in_process(
+            forecast, program, rig, done=partial(self._on_done, program, rig), failed=self._on_failed
+        )
 
-    def _on_done(self, result: Forecast) -> None:
+    def _on_done(self, program: Program, rig: RigConfig, result: Forecast) -> None:
         self._running = False
-        if self._wanted is None:
-            self._finish(result)
+        if self._wanted is None:  # what came back from the worker are copies
+            self._finish(replace(result, program=program, rig=rig))
         else:
             self._begin()
 

@@ -1,20 +1,20 @@
 """What the fields of the page hold: a program as the texts that a person sees, right or wrong.
 
-Job: frozen values (so that undo is a list of them) and the way from and to the models: `form_of` is exact, and
-`mapping_of` puts a text that is no number into the mapping as it is, so that the model refuses it at its place.
-Without Qt. Not its job: judging (`checking`), keeping (`draft`).
+Job: frozen values (so that undo is a list of them) and the way from and to the models: `form_of` is exact,
+and `mapping_of` puts a text that is no number into the mapping as it is, so that the model refuses it at
+its place. Without Qt. Not its job: judging (`checking`), keeping (`draft`).
 """
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, get_args
 
 from rigctl.gui.pages.sequence.paste import parse_list, parse_number, write_number
 from sequences.braking import AXES, Axis, Conditioning, Recording, Role, TemperatureLimits
 from sequences.matrix import Sequence
-from sequences.pressure import PressureFunction
+from sequences.pressure import ConstantPressure, PressureFunction, RampPressure, StepsPressure
 from sequences.profiles import SpeedProfile
 from sequences.program import Program
 
@@ -157,16 +157,15 @@ def _speed_rows(profile: SpeedProfile) -> list[SpeedRow]:
 
 
 def _function_form(function: PressureFunction) -> FunctionForm:
-    shown: dict[str, str] = {"kind": function.kind, "rise": write_number(function.rise_s)}
-    if function.kind in ("ramp", "sine", "triangle"):
-        shown["amplitude"] = write_number(function.amplitude_bar)
-    if function.kind in ("sine", "triangle"):
-        shown["frequency"] = write_number(function.frequency_hz)
-    if function.kind == "ramp":
-        shown["direction"] = function.direction
-    if function.kind == "steps":
-        shown["steps"] = " ".join(map(write_number, function.steps_bar))
-    return FunctionForm(**shown)
+    form = FunctionForm(kind=function.kind, rise=write_number(function.rise_s))
+    if isinstance(function, StepsPressure):
+        return replace(form, steps=" ".join(map(write_number, function.steps_bar)))
+    if isinstance(function, ConstantPressure):
+        return form
+    form = replace(form, amplitude=write_number(function.amplitude_bar))
+    if isinstance(function, RampPressure):
+        return replace(form, direction=function.direction)
+    return replace(form, frequency=write_number(function.frequency_hz))
 
 
 def _conditioning_form(how: Conditioning) -> ConditioningForm:

@@ -106,7 +106,8 @@ class SetpointsSection(Section):
         self.processing.setToolTip(
             self.tr(
                 "All combinations: every temperature with every speed and every pressure.\n"
-                "Entry by entry: the first ones together, then the second ones, …; a list of one value holds for all."
+                "Entry by entry: the first ones together, then the second ones, …; a list of one value "
+                "holds for all."
             )
         )
         self.chips = OrderChips(theme, {axis: name_of(axis) for axis in AXES})

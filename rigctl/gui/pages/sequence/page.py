@@ -1,7 +1,7 @@
 """The sequence page: programs opened, edited, checked against a rig, saved and started.
 
-Job: put the parts together: every change goes into the draft, and what follows from it is shown. Not its job: any
-of the parts.
+Job: put the parts together: every change goes into the draft, and what follows from it is shown. Not its
+job: any of the parts.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from typing import Any
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
-    QHBoxLayout,
     QLabel,
     QScrollArea,
     QSplitter,
@@ -151,7 +150,7 @@ class SequencePage(Page):
         self.fault_list.chosen.connect(self.go_to)
         self.start.started.connect(self._on_start)
         self.forecaster.ready.connect(self._on_forecast)
-        self.forecaster.failed.connect(lambda why: self.services.notify(why))
+        self.forecaster.failed.connect(self.services.notify)
         self.services.rig.stateChanged.connect(lambda _state: self._show_start())
         self.services.theme.changed.connect(self._show)
         for keys, function in (
@@ -166,7 +165,7 @@ class SequencePage(Page):
             return
         shortcut = QShortcut(keys, self)
         shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-        shortcut.activated.connect(lambda: function())
+        shortcut.activated.connect(function)
 
     # -- page ---------------------------------------------------------------------------------------
 
@@ -209,11 +208,16 @@ class SequencePage(Page):
     def help_text(self) -> str:
         """See Page."""
         return self.tr(
-            "<p>A program is a list of sequences; a sequence runs its lists of temperatures, speeds and pressures. "
-            "What is wrong stands at its field and in the list on the right; a click there leads to the field.</p>"
-            "<p>In the lists: type numbers and press Enter, paste from a spreadsheet (Ctrl+V), Del deletes rows, + "
-            "joins a speed row with the one above. The order of the loops is changed by dragging, or with Ctrl and "
-            "the arrow keys.</p><p>Ctrl+N new · Ctrl+O open · Ctrl+S save · Ctrl+Shift+S save as · Ctrl+Z undo · "
+            "<p>A program is a list of sequences; a sequence runs its lists of temperatures, speeds and "
+            "pressures. "
+            "What is wrong stands at its field and in the list on the right; a click there leads to the "
+            "field.</p>"
+            "<p>In the lists: type numbers and press Enter, paste from a spreadsheet (Ctrl+V), Del "
+            "deletes rows, + "
+            "joins a speed row with the one above. The order of the loops is changed by dragging, or with "
+            "Ctrl and "
+            "the arrow keys.</p><p>Ctrl+N new · Ctrl+O open · Ctrl+S save · Ctrl+Shift+S save as · Ctrl+Z "
+            "undo · "
             "Ctrl+Y redo · Alt+Up, Alt+Down move a sequence · Del remove it</p>"
         )
 

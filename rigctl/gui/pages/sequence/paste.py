@@ -1,7 +1,7 @@
 """Numbers as people type and paste them: decimal comma or point, cells parted by tabs, lines, semicolons.
 
-Job: text to cells and cells to numbers, without guessing: what could mean two things is refused. Pure functions
-without Qt. Not its job: which values make sense (`sequences`).
+Job: text to cells and cells to numbers, without guessing: what could mean two things is refused. Pure
+functions without Qt. Not its job: which values make sense (`sequences`).
 """
 
 from __future__ import annotations
@@ -30,10 +30,8 @@ def write_number(value: float) -> str:
 def _split_commas(token: str) -> list[str]:
     """ "5,10,15" and "2.5,3.5" are lists; "2,5" is one number; "1.234,5" stays and is refused later."""
     pieces = token.split(",")
-    if len(pieces) > 2 or (len(pieces) == 2 and all("." in piece for piece in pieces)):
-        if all(_NUMBER.fullmatch(piece) for piece in pieces):
-            return pieces
-    return [token]
+    several = len(pieces) > 2 or (len(pieces) == 2 and all("." in piece for piece in pieces))
+    return pieces if several and all(_NUMBER.fullmatch(piece) for piece in pieces) else [token]
 
 
 def _cells_of_line(line: str) -> list[str]:
@@ -54,7 +52,13 @@ def parse_rows(text: str) -> list[list[str]]:
 
 def parse_list(text: str) -> list[str]:
     """All cells that are not empty, in reading order: one list, whatever its shape was."""
-    return [cell for row in parse_rows(text) for cell in row if cell]
+    return [piece for row in parse_rows(text) for cell in row for piece in _split_blanks(cell)]
+
+
+def _split_blanks(cell: str) -> list[str]:
+    """ "5 10" are two numbers of a list; "5 bar" stays together and is refused later."""
+    pieces = cell.split()
+    return pieces if all(parse_number(piece) is not None for piece in pieces) else [cell]
 
 
 def parse_block(text: str, columns: int) -> list[list[str]]:

@@ -63,7 +63,8 @@ class PressureSection(Section):
         )  # fmt: skip
         self.rise = self.typed(
             self.grid, key + "rise_s", self.tr("&Rise time"), "s",
-            self.tr("The pressure rises in a straight line from zero in this time; 0: as fast as the rig can."),
+            self.tr("The pressure rises in a straight line from zero in this time; 0: as fast as the rig "
+            "can."),
         )  # fmt: skip
         self.preview = CoursePreview(theme, "bar")
         self.preview.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)

@@ -55,7 +55,7 @@ class CoursePlots(QWidget):
         self.whole.setObjectName("preview-whole")
         self.whole.setToolTip(self.tr("Back to the whole time axis"))
         self.whole.clicked.connect(self.follow_all)
-        self.view = pg.GraphicsLayoutWidget()
+        self.view: Any = pg.GraphicsLayoutWidget()
         self.view.setObjectName("preview-plots")
         self.view.setAccessibleName(self.tr("Drawn course of the first brakings"))
         self.view.setMinimumSize(theme.px(24), theme.px(24))
@@ -64,9 +64,9 @@ class CoursePlots(QWidget):
         self.view.ci.layout.setContentsMargins(0, 0, theme.px(0.5), 0)
         self.readout = QLabel()
         self.readout.setProperty("look", "muted")
-        self.plots: dict[str, pg.PlotItem] = {}
-        self.curves: dict[str, pg.PlotDataItem] = {}
-        self._lines: list[pg.InfiniteLine] = []
+        self.plots: dict[str, Any] = {}
+        self.curves: dict[str, Any] = {}
+        self._lines: list[Any] = []
         self._build()
         theme.changed.connect(self._restyle)
         self._restyle()
@@ -77,7 +77,7 @@ class CoursePlots(QWidget):
             "temperature": (self.tr("T"), "°C"), "speed": (self.tr("n"), "1/min"),
             "pressure": (self.tr("p"), "bar"),
         }  # fmt: skip
-        first: pg.PlotItem | None = None
+        first: Any = None
         for row, key in enumerate(_TRACES):
             plot = self.view.addPlot(row=row, col=0)
             name, unit = names[key]
@@ -158,8 +158,10 @@ class CoursePlots(QWidget):
             return
         minutes = course.t_s / 60.0
         data = {
-            "temperature": course.temperature_degc, "speed": course.speed_rpm, "pressure": course.pressure_bar,
-        }  # fmt: skip
+            "temperature": course.temperature_degc,
+            "speed": course.speed_rpm,
+            "pressure": course.pressure_bar,
+        }
         for key, curve in self.curves.items():
             curve.setData(minutes, data[key])
         self.braking.setData(*self._brakings(course))

@@ -1,6 +1,7 @@
 """Program files for the page: read, written as the command line does it, and what saving would lose.
 
-Job: functions without Qt that run in a thread. Not its job: asking people (`files`), the format (`sequences`).
+Job: functions without Qt that run in a thread. Not its job: asking people (`files`), the format
+(`sequences`).
 """
 
 from __future__ import annotations

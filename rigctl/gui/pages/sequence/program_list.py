@@ -80,7 +80,8 @@ class ProgramList(QWidget):
         self.list.setDefaultDropAction(Qt.DropAction.MoveAction)
         self.list.setToolTip(
             self.tr(
-                "The sequences run from top to bottom. Tick: it is run. Drag, or Alt with the arrow keys: move."
+                "The sequences run from top to bottom. Tick: it is run. Drag, or Alt with the arrow keys: "
+                "move."
             )
         )
         self.list.setWordWrap(True)

@@ -27,24 +27,29 @@ def why_not(
 ) -> str:
     """What hinders a start, and what to do about it; "" when nothing does."""
     errors = [fault for fault in faults if fault.severity == "error"]
+    why = ""
     if not draft.form.sequences:
-        return QCoreApplication.translate("sequence", "Cannot be started: add a sequence first.")
-    if errors:
-        names = {sequence.uid: sequence.name.strip() for sequence in draft.form.sequences}
-        parts = (names.get(errors[0].uid, ""), place_name(errors[0].place))
-        where = ", ".join(part for part in parts if part)
-        first = (f"{where}: " if where else "") + errors[0].words
-        if len(errors) == 1:
-            return QCoreApplication.translate("sequence", "Cannot be started: {0}").format(first)
-        text = QCoreApplication.translate("sequence", "Cannot be started, {0} errors. First: {1}")
-        return text.format(len(errors), first)
-    if rig is None:
-        return QCoreApplication.translate("sequence", "Cannot be started: no rig file is found.")
-    if forecast is None or forecast.program is not draft.program or forecast.rig is not rig:
-        return QCoreApplication.translate("sequence", "Checking every set-point against the rig …")
-    if state.mode == "program" and state.word in _BUSY:
-        return QCoreApplication.translate("sequence", "A program is running; see the run page.")
-    return ""
+        why = QCoreApplication.translate("sequence", "Cannot be started: add a sequence first.")
+    elif errors:
+        why = _errors_text(draft, errors)
+    elif rig is None:
+        why = QCoreApplication.translate("sequence", "Cannot be started: no rig file is found.")
+    elif forecast is None or forecast.program is not draft.program or forecast.rig is not rig:
+        why = QCoreApplication.translate("sequence", "Checking every set-point against the rig …")
+    elif state.mode == "program" and state.word in _BUSY:
+        why = QCoreApplication.translate("sequence", "A program is running; see the run page.")
+    return why
+
+
+def _errors_text(draft: ProgramDraft, errors: list[Fault]) -> str:
+    names = {sequence.uid: sequence.name.strip() for sequence in draft.form.sequences}
+    parts = (names.get(errors[0].uid, ""), place_name(errors[0].place))
+    where = ", ".join(part for part in parts if part)
+    first = (f"{where}: " if where else "") + errors[0].words
+    if len(errors) == 1:
+        return QCoreApplication.translate("sequence", "Cannot be started: {0}").format(first)
+    text = QCoreApplication.translate("sequence", "Cannot be started, {0} errors. First: {1}")
+    return text.format(len(errors), first)
 
 
 def start_words(forecast: Forecast, disk_left: int | None, warnings: int, *, saved: bool) -> str:

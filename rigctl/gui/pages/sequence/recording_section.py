@@ -51,12 +51,27 @@ class RecordingSection(Section):
         self._rig: RigConfig | None = None
         self.lines: list[_ChannelLine] = []
         self.grid = FieldGrid(theme)
-        self.sampling = self.typed(self.grid, "recording.sampling_hz", self.tr("Sa&mpling rate"), "Hz",
-                                   self.tr("All channels are sampled at this rate, then decimated"))  # fmt: skip
-        self.pre = self.typed(self.grid, "recording.pre_s", self.tr("From &before the pressure"), "s",
-                              self.tr("Recorded before the pressure comes on: the background noise"))  # fmt: skip
-        self.post = self.typed(self.grid, "recording.post_s", self.tr("To &after the release"), "s",
-                               self.tr("Recorded after the braking"))  # fmt: skip
+        self.sampling = self.typed(
+            self.grid,
+            "recording.sampling_hz",
+            self.tr("Sa&mpling rate"),
+            "Hz",
+            self.tr("All channels are sampled at this rate, then decimated"),
+        )
+        self.pre = self.typed(
+            self.grid,
+            "recording.pre_s",
+            self.tr("From &before the pressure"),
+            "s",
+            self.tr("Recorded before the pressure comes on: the background noise"),
+        )
+        self.post = self.typed(
+            self.grid,
+            "recording.post_s",
+            self.tr("To &after the release"),
+            "s",
+            self.tr("Recorded after the braking"),
+        )
         self.fault = FaultLabel(theme)
         self._table = QGridLayout()
         heads = (self.tr("Channel"), self.tr("Decimation"), self.tr("Stored rate"), self.tr("Rig's rate"))

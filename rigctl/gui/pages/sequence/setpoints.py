@@ -139,15 +139,17 @@ class Lists(QWidget):
         super().__init__()
         self._theme = theme
         typed = self.tr(
-            "Type a number and press Enter; several at once, as in 5 10 15, fill several rows. Paste from a spreadsheet with Ctrl+V."
-        )  # noqa: E501
+            "Type a number and press Enter; several at once, as in 5 10 15, fill several rows. Paste from "
+            "a spreadsheet with Ctrl+V."
+        )
         self.temperatures = ListColumn(
             theme, self.tr("&Temperatures"), "temperatures_degc", "°C",
             self.tr("Disc temperature at the start of each braking.") + "\n" + typed,
         )  # fmt: skip
         self.speeds = ListColumn(
             theme, self.tr("&Speed profiles"), "speed_profiles", "1/min",
-            self.tr("Within t seconds from n1 to n2. A row marked + goes on with the profile above it (key +).")
+            self.tr("Within t seconds from n1 to n2. A row marked + goes on with the profile above it "
+            "(key +).")
             + "\n" + typed, speeds=True,
         )  # fmt: skip
         self.pressures = ListColumn(

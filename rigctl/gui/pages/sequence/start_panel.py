@@ -1,6 +1,7 @@
 """Right column, bottom: [Start …], why it cannot be started, and the second click that starts it.
 
-Job: asking in place (no dialog); `started` carries what was chosen. Not its job: saving and starting (`page`).
+Job: asking in place (no dialog); `started` carries what was chosen. Not its job: saving and starting
+(`page`).
 """
 
 from __future__ import annotations

@@ -46,40 +46,92 @@ class TemperatureSection(Section):
         self.enabled = QCheckBox(self.tr("bring the disc to it"))
         self.enabled.toggled.connect(self._on_enabled)
         self.left.add(
-            key + "enabled", self.tr("Start t&emperature"), self.enabled,
-            tip=self.tr("Off: brake at whatever temperature the disc has; the list of temperatures is not used."),
+            key + "enabled",
+            self.tr("Start t&emperature"),
+            self.enabled,
+            tip=self.tr(
+                "Off: brake at whatever temperature the disc has; the list of temperatures is not used."
+            ),
             wide=True,
-        )  # fmt: skip
+        )
         self.mode = self.chosen(
-            self.left, key + "mode", self.tr("&How"),
+            self.left,
+            key + "mode",
+            self.tr("&How"),
             {"exact": self.tr("heat or cool to it"), "at_most": self.tr("only cool, at most")},
-            self.tr("“Only cool” starts as soon as the disc is not hotter (bedding); it never waits for heat."),
-        )  # fmt: skip
-        self.tolerance = self.typed(self.left, key + "tolerance_k", self.tr("To&lerance ±"), "K",
-                                    self.tr("Half width of the band around the start temperature"))  # fmt: skip
-        self.soak = self.typed(self.left, key + "soak_s", self.tr("Soa&k"), "s",
-                               self.tr("How long the disc stays in the band before the braking"))  # fmt: skip
-        self.timeout = self.typed(self.left, key + "timeout_s", self.tr("Ti&me-out"), "s",
-                                  self.tr("Heating, cooling and soaking together may take this long"))  # fmt: skip
-        self.drag_speed = self.typed(self.left, _DRAG[0], self.tr("Drag speed"), "1/min",
-                                     self.tr("Speed of heating by dragging; empty: the rig's own"))  # fmt: skip
-        self.drag_pressure = self.typed(self.left, _DRAG[1], self.tr("Drag pressure"), "bar",
-                                        self.tr("Pressure of heating by dragging; empty: the rig's own"))  # fmt: skip
+            self.tr(
+                "“Only cool” starts as soon as the disc is not hotter (bedding); it never waits for heat."
+            ),
+        )
+        self.tolerance = self.typed(
+            self.left,
+            key + "tolerance_k",
+            self.tr("To&lerance ±"),
+            "K",
+            self.tr("Half width of the band around the start temperature"),
+        )
+        self.soak = self.typed(
+            self.left,
+            key + "soak_s",
+            self.tr("Soa&k"),
+            "s",
+            self.tr("How long the disc stays in the band before the braking"),
+        )
+        self.timeout = self.typed(
+            self.left,
+            key + "timeout_s",
+            self.tr("Ti&me-out"),
+            "s",
+            self.tr("Heating, cooling and soaking together may take this long"),
+        )
+        self.drag_speed = self.typed(
+            self.left,
+            _DRAG[0],
+            self.tr("Drag speed"),
+            "1/min",
+            self.tr("Speed of heating by dragging; empty: the rig's own"),
+        )
+        self.drag_pressure = self.typed(
+            self.left,
+            _DRAG[1],
+            self.tr("Drag pressure"),
+            "bar",
+            self.tr("Pressure of heating by dragging; empty: the rig's own"),
+        )
 
     def _build_rest(self) -> None:
-        self.maximum = self.typed(self.right, "limits.max_degc", self.tr("Ma&ximum temperature"), "°C",
-                                  self.tr("Hotter than this, braking stops …"))  # fmt: skip
-        self.cool_down = self.typed(self.right, "limits.cool_down_degc", self.tr("&Cool-down temperature"), "°C",
-                                    self.tr("… and goes on when the disc has cooled to this"))  # fmt: skip
-        self.dwell = self.typed(self.right, "dwell_s", self.tr("Rest &between brakings"), "s",
-                                self.tr("From release to the next braking"))  # fmt: skip
+        self.maximum = self.typed(
+            self.right,
+            "limits.max_degc",
+            self.tr("Ma&ximum temperature"),
+            "°C",
+            self.tr("Hotter than this, braking stops …"),
+        )
+        self.cool_down = self.typed(
+            self.right,
+            "limits.cool_down_degc",
+            self.tr("&Cool-down temperature"),
+            "°C",
+            self.tr("… and goes on when the disc has cooled to this"),
+        )
+        self.dwell = self.typed(
+            self.right,
+            "dwell_s",
+            self.tr("Rest &between brakings"),
+            "s",
+            self.tr("From release to the next braking"),
+        )
         self.ventilator = QCheckBox(self.tr("may run"))
         self.ventilator.toggled.connect(lambda _on: self.valueChanged.emit("ventilator", False))
         self.right.add(
-            "ventilator", self.tr("Ventilator while braking"), self.ventilator,
-            tip=self.tr("Never with recorded sound: the ventilator would be heard. Between brakings it always cools."),
+            "ventilator",
+            self.tr("Ventilator while braking"),
+            self.ventilator,
+            tip=self.tr(
+                "Never with recorded sound: the ventilator would be heard. Between brakings it always cools."
+            ),
             wide=True,
-        )  # fmt: skip
+        )
 
     def _on_enabled(self, _on: bool) -> None:
         self.valueChanged.emit("conditioning.enabled", False)
@@ -117,11 +169,15 @@ class TemperatureSection(Section):
             box.blockSignals(False)
         choose(self.mode, how.mode)
         for edit, text in (
-            (self.tolerance, how.tolerance), (self.soak, how.soak), (self.timeout, how.timeout),
-            (self.drag_speed, how.drag_speed), (self.drag_pressure, how.drag_pressure),
-            (self.maximum, form.limits.maximum), (self.cool_down, form.limits.cool_down),
+            (self.tolerance, how.tolerance),
+            (self.soak, how.soak),
+            (self.timeout, how.timeout),
+            (self.drag_speed, how.drag_speed),
+            (self.drag_pressure, how.drag_pressure),
+            (self.maximum, form.limits.maximum),
+            (self.cool_down, form.limits.cool_down),
             (self.dwell, form.dwell),
-        ):  # fmt: skip
+        ):
             edit.setValue(text)
         for place in self.left.places[1:]:
             heats = place not in _DRAG or how.mode == "exact"

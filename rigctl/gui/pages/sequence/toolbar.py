@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Signal, SignalInstance
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QPushButton, QSizePolicy, QWidget
 
 from rigctl.gui.theme import ThemeKeeper
@@ -55,11 +55,11 @@ class ProgramBar(QWidget):
         theme.changed.connect(self._restyle)
         self._restyle()
 
-    def _button(self, key: str, text: str, tip: str, signal: Signal) -> QPushButton:
+    def _button(self, key: str, text: str, tip: str, signal: SignalInstance) -> QPushButton:
         button = QPushButton(text)
         button.setObjectName(f"program-{key}")
         button.setToolTip(tip)
-        button.clicked.connect(lambda _checked=False: signal.emit())  # type: ignore[attr-defined]
+        button.clicked.connect(lambda _checked=False: signal.emit())
         self._row.addWidget(button)
         return button
 
