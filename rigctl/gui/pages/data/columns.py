@@ -5,7 +5,6 @@ Job: one description per column, and the text of a cell. Not its job: which are 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -60,8 +59,9 @@ class Column:
         """Order of the cells; missing values are always last."""
         value = self.value(entry)
         if self.is_number:
-            number = math.nan if value is None or isinstance(value, str) else float(value)
-            return math.isnan(number), 0.0 if math.isnan(number) else number
+            if value is None or isinstance(value, str) or value != value:  # noqa: PLR0124
+                return True, 0.0
+            return False, value
         text = "" if value is None else str(value).casefold()
         return not text, text
 

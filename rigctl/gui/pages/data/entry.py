@@ -7,7 +7,7 @@ Job: make entries from summaries, keep them up to date with what people say. Not
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,34 +25,42 @@ EXCLUDED = "excluded"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A braking of a campaign; `name` is its file relative to the campaign."""
+    """A braking of a campaign.
+
+    Attributes
+    ----------
+    name : str
+        Its file relative to the campaign.
+    row, events, marks
+        What is known of it.
+    trashed : bool
+        True when its file is in the trash.
+    state : str
+        trashed, unreadable, excluded, else the status of the recording.
+    counts : bool
+        True when it belongs to the base of statistics.
+    """
 
     name: str
     row: BrakingRow
     events: tuple[EventRow, ...] = ()
     marks: tuple[dict[str, Any], ...] = ()
+    trashed: bool = field(init=False, compare=False)
+    state: str = field(init=False, compare=False)
+    counts: bool = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Derived once: ten thousand entries are asked for them with every filter."""
+        trashed = self.name.startswith(f"{TRASH}/")
+        state = EXCLUDED if self.row.excluded else self.row.status
+        object.__setattr__(self, "trashed", trashed)
+        object.__setattr__(self, "state", TRASHED if trashed else state)
+        object.__setattr__(self, "counts", self.row.counts and not trashed)
 
     @property
     def index(self) -> int:
         """Number of the braking."""
         return self.row.index
-
-    @property
-    def trashed(self) -> bool:
-        """True when its file is in the trash."""
-        return self.name.startswith(f"{TRASH}/")
-
-    @property
-    def state(self) -> str:
-        """trashed, unreadable, excluded, else the status of the recording."""
-        if self.trashed:
-            return TRASHED
-        return EXCLUDED if self.row.excluded else self.row.status
-
-    @property
-    def counts(self) -> bool:
-        """True when it belongs to the base of statistics."""
-        return self.row.counts and not self.trashed
 
     def path(self, campaign: Path) -> Path:
         """The file."""

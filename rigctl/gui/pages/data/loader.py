@@ -23,6 +23,8 @@ from rigctl.recording.catalogue import Catalogue, Found, files_of
 
 PIECE = 200
 """Files read per piece: about a tenth of a second of work, and of waiting for a cancel."""
+_NEWS = 0.25
+"""Share of new entries among all that is worth a new arrangement of the table."""
 
 State = tuple[int, int]
 
@@ -54,6 +56,8 @@ class CampaignLoader(QObject):
         self.said = Folding()
         self._entries: dict[str, Entry] = {}
         self._waiting: list[str] = []
+        self._news: list[Entry] = []
+        self._gone: list[str] = []
         self._total = 0
         self._stamp: State = (0, 0)
         self._scan: Job | None = None
@@ -109,7 +113,7 @@ class CampaignLoader(QObject):
             if job is not None:
                 job.cancel()
         self._scan = self._piece = None
-        self._waiting = []
+        self._waiting, self._news, self._gone = [], [], []
         self._total = 0
 
     # -- results ------------------------------------------------------------------------------------
@@ -157,12 +161,22 @@ class CampaignLoader(QObject):
         for name in gone:
             del self._entries[name]
         self._entries.update((entry.name, entry) for entry in entries)
-        self.changed.emit(entries, gone)
+        self._news += entries
+        self._gone += gone
+        if not self._waiting or len(self._news) > _NEWS * len(self._entries):
+            self._tell()
         self._next()
+
+    def _tell(self) -> None:
+        """Hand over what was read: seldom while much is read, so that the table is not arranged too often."""
+        entries, gone, self._news, self._gone = self._news, self._gone, [], []
+        if entries or gone:
+            self.changed.emit(entries, gone)
 
     def _on_failed(self, words: str) -> None:
         self._scan = self._piece = None
         self._waiting = []
+        self._tell()
         self.progress.emit(1.0)
         self.failed.emit(words)
 

@@ -118,8 +118,10 @@ class BrakingTableModel(QAbstractTableModel):
         arranged = self.list.visible
         new = [entry.name for entry in arranged]
         if new == old:
-            if new:
-                self.dataChanged.emit(self.index(0, 0), self.index(len(new) - 1, len(COLUMNS) - 1))
+            different = [row for row, (a, b) in enumerate(zip(shown, arranged, strict=True)) if a is not b]
+            if different:
+                first, last = self.index(different[0], 0), self.index(different[-1], len(COLUMNS) - 1)
+                self.dataChanged.emit(first, last)
         elif old and new[: len(old)] == old:
             self.list.visible = arranged[: len(old)]
             self.beginInsertRows(QModelIndex(), len(old), len(new) - 1)
@@ -143,7 +145,8 @@ class BrakingTableModel(QAbstractTableModel):
         self._struck = self._theme.font()
         self._struck.setStrikeOut(True)
         if self.list.visible:
-            self._change(lambda: None)
+            last = self.index(len(self.list.visible) - 1, len(COLUMNS) - 1)
+            self.dataChanged.emit(self.index(0, 0), last)
 
     def _tip(self, entry: Entry, column: Column) -> str:
         row = entry.row

@@ -7,7 +7,7 @@ brakings.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import partial
 
 from PySide6.QtCore import QItemSelection, QItemSelectionModel, QPoint, QSettings, Qt, Signal
@@ -127,10 +127,9 @@ class TablePane(QWidget):
     def _restore(self, current: str, *, scroll: bool = False) -> None:
         selection = QItemSelection()
         last = self.model.columnCount() - 1
-        for name in self._chosen:
-            row = self.model.list.row_of(name)
-            if row is not None:
-                selection.select(self.model.index(row, 0), self.model.index(row, last))
+        rows = sorted(row for name in self._chosen if (row := self.model.list.row_of(name)) is not None)
+        for first, final in _stretches(rows):
+            selection.select(self.model.index(first, 0), self.model.index(final, last))
         self._quiet = True
         chooser = self.view.selectionModel()
         row = self.model.list.row_of(current)
@@ -148,13 +147,13 @@ class TablePane(QWidget):
         self._chosen = [name for name in before if self.model.list.row_of(name) is not None]
         self._restore(self._current)
         self.filters.set_tags(self.model.list.tags())
-        self._count()
         self._tell()
 
     def _on_selection(self) -> None:
         if self._quiet:
             return
-        rows = {index.row() for index in self.view.selectionModel().selectedRows()}
+        stretches = self.view.selectionModel().selection()
+        rows = {row for part in list(stretches) for row in range(part.top(), part.bottom() + 1)}
         self._chosen = [self.model.entry(row).name for row in sorted(rows)]
         self._tell()
 
@@ -171,11 +170,10 @@ class TablePane(QWidget):
         self.selectionChanged.emit(entries)
 
     def _count(self) -> None:
-        everything = [e for e in self.model.list.all() if not e.trashed] if self.model.list.visible else []
         shown = self.model.rowCount()
-        words = self.tr("{0} of {1} brakings").format(shown, max(len(everything), shown))
-        squealing = sum(1 for entry in self.model.list.visible if entry.counts and entry.row.squeals)
-        words += " · " + self.tr("{0} squealing").format(squealing)
+        here = self.model.list.count_here()
+        words = self.tr("{0} of {1} brakings").format(shown, max(here, shown))
+        words += " · " + self.tr("{0} squealing").format(self.model.list.squealing)
         if len(self._chosen) > 1:
             words += " · " + self.tr("{0} chosen").format(len(self._chosen))
         self.count.setText(words)
@@ -275,3 +273,18 @@ class TablePane(QWidget):
         header = self.view.horizontalHeader()
         for number, column in enumerate(COLUMNS):
             header.resizeSection(number, self._theme.px(_WIDTHS.get(column.key, 8)))
+
+
+def _stretches(rows: list[int]) -> Iterator[tuple[int, int]]:
+    """First and last of each stretch of consecutive numbers."""
+    begin = end = None
+    for row in rows:
+        if begin is None or end is None:
+            begin = end = row
+        elif row == end + 1:
+            end = row
+        else:
+            yield begin, end
+            begin = end = row
+    if begin is not None and end is not None:
+        yield begin, end
