@@ -33,7 +33,7 @@ LOOK_MS = 300  # how often new sessions, journal and started commands are looked
 DISK_EVERY_S = 5.0
 CONNECT_TIMEOUT_S = 0.3
 SILENT_S = 3.0
-MOST_AT_ONCE = 200  # messages of the controller in one turn of the event loop
+TURN_S = 0.012  # for messages of the controller in one turn of the event loop; the rest waits for the next
 
 
 class RigConnection(QObject):
@@ -71,6 +71,7 @@ class RigConnection(QObject):
         self._notifier: QSocketNotifier | None = None
         self._tail: JournalTail | None = None
         self._pace: Pace | None = None
+        self._blocks: list[Mapping[str, Any]] = []
         self._result: RunResult | None = None
         self._lost = self._safe = False
         self._launch: Launch | None = None
@@ -135,7 +136,7 @@ class RigConnection(QObject):
             self._ended.add(session.run_dir)
             self.refused.emit(str(error))
             return
-        self.session, self._client = session, client
+        self.session, self._client, self._blocks = session, client, []
         self._result, self._lost, self._safe = None, False, False
         self._pace = Pace(session.program, rig.capabilities) if session.program is not None else None
         self._heard_at, self._disk_at = clock.monotonic(), 0.0
@@ -231,9 +232,15 @@ class RigConnection(QObject):
     # -- news of the controller -------------------------------------------------------------------
 
     def _read(self) -> None:
-        for _ in range(MOST_AT_ONCE):
-            if self._client is None:
-                return
+        """Messages that have come; those about blocks are passed on together: samples are read once."""
+        self._take_waiting()
+        blocks, self._blocks = self._blocks, []
+        if blocks:
+            self.blocksArrived.emit(blocks)
+
+    def _take_waiting(self) -> None:
+        until = clock.monotonic() + TURN_S
+        while self._client is not None:
             try:
                 news = self._client.recv(0)
             except LinkClosed:
@@ -246,13 +253,15 @@ class RigConnection(QObject):
                 return
             self._heard_at = clock.monotonic()
             self._take(news)
+            if clock.monotonic() > until:
+                return
 
     def _take(self, news: object) -> None:
         if isinstance(news, Progress):
             left_s = self._pace.left_s(news) if self._pace is not None else None
             self._set(with_progress(self.state, news, left_s))
         elif isinstance(news, Blocks):
-            self.blocksArrived.emit(news.blocks)
+            self._blocks += news.blocks
         elif isinstance(news, Commander):
             self._set(replace(self.state, commander=news.who, commanding=news.you))
         elif isinstance(news, Answer) and news.reason:
