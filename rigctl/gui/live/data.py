@@ -20,8 +20,9 @@ from rigctl.gui.live.sound import LiveSpectrum
 
 SLICE_S = 0.25
 """Sound is analysed in pieces of this length; one takes 1 to 4 ms."""
-BACKLOG_S = 12.0
-"""In virtual time more sound comes than can be analysed beside the window: what is older becomes a gap."""
+BACKLOG_S, KEPT_S = 3.0, 1.5
+"""In virtual time more sound comes than can be analysed beside the window. When more than the first waits,
+all but the newest is left out, a gap: so that what is analysed is still to be seen, and is in one piece."""
 
 
 class StepSeries:
@@ -51,17 +52,18 @@ class StepSeries:
         for start_s, value in self._points:
             if start_s > to_s:
                 break
+            if start_s <= from_s:
+                t, v = [from_s], [value]
+                continue
             if v:
                 t.append(start_s)
                 v.append(v[-1])
-            t.append(max(start_s, from_s))
+            t.append(start_s)
             v.append(value)
         if t:
             t.append(to_s)
             v.append(v[-1])
-        times, values = np.array(t), np.array(v)
-        begin = max(int(np.count_nonzero(times < from_s)) - 1, 0)
-        return np.maximum(times[begin:], from_s), values[begin:]
+        return np.array(t), np.array(v)
 
     def copy(self) -> StepSeries:
         """Independent copy."""
@@ -130,8 +132,9 @@ class LiveData:
             piece = stretch.samples[at : at + step]
             self._backlog.append(Stretch(MICROPHONE, stretch.t_s + at / rate_hz, piece))
             self._backlog_s += len(piece) / rate_hz
-        while self._backlog_s > BACKLOG_S:
-            self._backlog_s -= len(self._backlog.popleft().samples) / rate_hz
+        if self._backlog_s > BACKLOG_S:
+            while self._backlog_s > KEPT_S:
+                self._backlog_s -= len(self._backlog.popleft().samples) / rate_hz
 
     def work(self, budget_s: float) -> bool:
         """Analyse waiting sound for about `budget_s`; True when some is left."""

@@ -121,10 +121,8 @@ class LiveFeed(QObject):
 
     def _on_state(self, state: RigState) -> None:
         if self._source is not None and self.data.end_s > float("-inf"):
-            readings = state.readings
-            self.data.note_setpoints(
-                self.data.end_s, {SPEED: readings.set_speed_rpm, PRESSURE: readings.set_pressure_bar}
-            )
+            wanted = {SPEED: state.readings.set_speed_rpm, PRESSURE: state.readings.set_pressure_bar}
+            self.data.note_setpoints(state.rig_s or self.data.end_s, wanted)
 
 
 def _read(campaign: Path, _reporter: object) -> SessionValues:

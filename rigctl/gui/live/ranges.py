@@ -63,14 +63,23 @@ class CalmRange:
         Keep zero in the middle (sound pressure).
     zero : bool
         Keep zero at the bottom while the data are not below (or at the top, while not above).
+    start : (float, float)
+        Before there are data.
     """
 
-    def __init__(self, least: float, *, symmetric: bool = False, zero: bool = False) -> None:
+    def __init__(
+        self,
+        least: float,
+        *,
+        symmetric: bool = False,
+        zero: bool = False,
+        start: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         self._least = least
         self._symmetric = symmetric
         self._zero = zero
         self._small_since: float | None = None
-        self.low, self.high = self._round(0.0, 0.0)
+        self.low, self.high = self._round(*start)
 
     def follow(self, low: float, high: float, now_s: float) -> tuple[float, float]:
         """The range for data between `low` and `high`; `now_s` is any clock."""

@@ -28,6 +28,8 @@ from rigctl.gui.theme import ThemeKeeper
 LEVELS_DB = (0.0, 120.0)
 _MARKS = 4
 _ABOVE_DB = 4.0
+_STALE_S = 10.0
+"""In virtual time the sound may be some seconds behind."""
 
 
 class SpectrumPlot(LivePlot):
@@ -111,10 +113,16 @@ class SpectrumPlot(LivePlot):
         if sound is None:
             return None, None, []
         if cursors is None:
-            return sound.spectrum_db, sound.hold_db, [event for event in sound.events() if event.open]
+            going_on = [] if self._stale(data, sound) else [event for event in sound.events() if event.open]
+            return sound.spectrum_db, sound.hold_db, going_on
         first, second = (sound.spectrogram.column_db(t_s) for t_s in cursors)
         events = [event for event in sound.events() if event.start_s <= cursors[0] <= event.end_s]
         return first, second, events
+
+    @staticmethod
+    def _stale(data: LiveData, sound: LiveSpectrum) -> bool:
+        """True when the rig goes on and sound has not come for long."""
+        return math.isfinite(sound.spectrum_s) and sound.spectrum_s < data.end_s - _STALE_S
 
     def _why_empty(self, data: LiveData) -> str:
         if not math.isfinite(data.end_s):
@@ -167,7 +175,9 @@ class SpectrumPlot(LivePlot):
         """The loudest event at the shown moment."""
         cursors = self._time.cursors
         words = "" if cursors is None else self.tr("at A {0}, dotted: B").format(clock_text(cursors[0], 0.01))
-        events = self._moments(data)[2]
+        sound, events = data.sound, self._moments(data)[2]
+        if cursors is None and sound is not None and self._stale(data, sound):
+            words = self.tr("newest sound, from {0}").format(clock_text(sound.spectrum_s))
         if events:
             loudest = max(events, key=lambda event: event.level_db)
             squeal = self.tr("squeal {0}").format(frequency_text(loudest.frequency_hz))

@@ -21,8 +21,6 @@ from rigctl.gui.live.sound import LAF, LZF
 from rigctl.gui.live.trend import TimePlot
 from rigctl.gui.theme import ThemeKeeper
 
-SILENT_AFTER_S = 2.0
-"""Sound this much older than the newest block: the rig delivers none at present."""
 _PEAK_S = 1.0
 _NO_POINTS = np.empty(0)
 
@@ -77,6 +75,8 @@ class WaveformPlot(TimePlot):
     def value_text(self, data: LiveData) -> str:
         """Largest pressure of the last second."""
         history = data.buffer.channels.get(MICROPHONE)
+        if sound_hint(self, data):
+            return ""
         found = None if history is None else history.extremes(history.end_s - _PEAK_S, history.end_s)
         if found is None:
             return ""
@@ -92,7 +92,7 @@ class LevelPlot(TimePlot):
     def __init__(self, theme: ThemeKeeper, group: TimeGroup) -> None:
         super().__init__(theme, group, "")
         self._lines: dict[str, LineItem] = {}
-        self._range = CalmRange(40.0)
+        self._range = CalmRange(40.0, start=(40.0, 100.0))
         self.title.setText(self.tr("Sound level, fast (dB)"))
         self.x_axis.name(self.tr("Rig time (h:mm:ss)"))
         for name in (LZF, LAF):
@@ -131,7 +131,7 @@ class LevelPlot(TimePlot):
 
     def value_text(self, data: LiveData) -> str:
         """Present levels."""
-        if data.sound is None:
+        if data.sound is None or sound_hint(self, data):
             return ""
         newest = [history.value(history.end_s - 1.0 / history.rate_hz)
                   for history in (data.sound.levels[LAF], data.sound.levels[LZF])]  # fmt: skip
