@@ -4,11 +4,13 @@ import pickle
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QSettings, QTimer
 
 from rigctl.core.errors import RigctlError
 from rigctl.gui.pages.model.page import ModelPage
 from rigctl.gui.pages.model.state import ModelState
+from rigctl.gui.rig.connection import RigConnection
+from rigctl.gui.services import Services
 from rigctl.gui.work import Job
 
 BRAKES = Path(__file__).resolve().parents[3] / "configs" / "brakes"
@@ -79,16 +81,44 @@ def state(inline, settled, qtbot):
     state.deleteLater()
 
 
-@pytest.fixture
-def page(inline, settled, qtbot):
-    """The page as the window shows it, model brake read."""
-    page = ModelPage(inline)
-    qtbot.addWidget(page)
+@pytest.fixture(scope="module")
+def shown_page(qapp, theme, tmp_path_factory):
+    """One page for all tests of a module, with its services: making it takes longer than most tests."""
+    folder = tmp_path_factory.mktemp("model-page")
+    settings = QSettings(str(folder / "window.ini"), QSettings.Format.IniFormat)
+    shown, news = [], []
+    services = Services(
+        RigConnection(), InlineWork(), theme, settings, folder / "data", BRAKES.parent,
+        lambda name, **what: shown.append((name, what)), news.append,
+    )  # fmt: skip
+    services.shown, services.news = shown, news
+    page = ModelPage(services)
     page.resize(1280, 760)
     page.show()
-    qtbot.waitExposed(page)
     page.activated()
-    qtbot.waitUntil(lambda: page.state.facts is not None)
-    settled(page.state)
     yield page
     page.deactivated()
+    page.close()
+    page.deleteLater()
+    QCoreApplication.sendPostedEvents(page, QEvent.Type.DeferredDelete)
+
+
+@pytest.fixture
+def page(shown_page, settled, qtbot):
+    """The page as it is when a person has just chosen the model brake."""
+    page = shown_page
+    qtbot.waitExposed(page)
+    page.tabs.setCurrentIndex(0)
+    page.services.shown.clear()
+    page.services.news.clear()
+    page.sliders.search.clear()
+    QCoreApplication.sendEvent(page.locus.plot, QEvent(QEvent.Type.Leave))
+    page.map.open_campaign(None)
+    page.ranking.helpful.setChecked(False)
+    page.activated()
+    page.locus.view.setPlaying(True)
+    page.state.facts = None
+    page.open(brake=BRAKES / "model.toml")
+    qtbot.waitUntil(lambda: page.state.facts is not None)
+    settled(page.state)
+    return page

@@ -181,7 +181,7 @@ def test_a_click_into_the_map_moves_the_sliders(page, qtbot, settled):
     assert page.state.selected.unstable
 
 
-def test_measured_squeal_is_drawn_told_and_opened(page, qtbot, inline):
+def test_measured_squeal_is_drawn_told_and_opened(page, qtbot):
     show_map(page, qtbot)
     squeal = Measured(7, Path("c/brakings/00007.h5"), 0.5, 25.0, 2150.0, 91.0)
     quiet = Measured(8, Path("c/brakings/00008.h5"), 0.3, 5.0)
@@ -191,7 +191,7 @@ def test_measured_squeal_is_drawn_told_and_opened(page, qtbot, inline):
     assert (page.state.value(MU), page.state.value(PRESSURE)) == (0.5, 25.0)
     assert "Braking 7" in page.map.under_mouse.text()
     page.map.open_braking.click()
-    assert inline.shown[-1] == ("data", {"braking": squeal.file})
+    assert page.services.shown[-1] == ("data", {"braking": squeal.file})
     page.map.across.combo.setCurrentIndex(page.map.across.combo.findData("disc_mass"))
     page.map.across.combo.activated.emit(page.map.across.combo.currentIndex())
     assert page.map.map.x == MapAxis("disc_mass", 0.5, 2.0)
@@ -216,7 +216,7 @@ def test_wrong_axes_are_told_at_once(page, qtbot):
     assert page.map.map.x.low == 0.2
 
 
-def test_a_modification_is_applied_and_taken_back(page, qtbot, tmp_path, inline):
+def test_a_modification_is_applied_and_taken_back(page, qtbot, tmp_path):
     page.tabs.setCurrentIndex(2)
     qtbot.waitUntil(lambda: page.ranking.ranking is not None)
     row = page.ranking.table.value()
@@ -234,7 +234,7 @@ def test_a_modification_is_applied_and_taken_back(page, qtbot, tmp_path, inline)
     page.ranking.helpful.setChecked(True)
     assert {r.verdict for r in page.ranking.table.rows.rows} <= {"recommended", "with care"}
     page.ranking.save(tmp_path / "ranking.csv")
-    qtbot.waitUntil(lambda: bool(inline.news))
+    qtbot.waitUntil(lambda: bool(page.services.news))
     assert (tmp_path / "ranking.csv").read_text().startswith("modification,")
 
 
@@ -246,7 +246,7 @@ def test_a_ranking_that_is_not_wanted_is_dropped(page, qtbot):
     assert page.ranking.ranking is None
 
 
-def test_pictures_are_copied_and_saved(page, qtbot, tmp_path, inline):
+def test_pictures_are_copied_and_saved(page, tmp_path):
     menu = page.locus.menu.menu()
     assert [action.text() for action in menu.actions()][-2:] == ["Copy picture", "Save picture…"]
     next(action for action in menu.actions() if action.text() == "View: all modes").trigger()
@@ -255,9 +255,9 @@ def test_pictures_are_copied_and_saved(page, qtbot, tmp_path, inline):
     page.locus.menu.copy()
     page.locus.menu.save(tmp_path / "locus")
     assert (tmp_path / "locus.png").stat().st_size > 1000
-    assert "locus.png" in inline.news[-1]
+    assert "locus.png" in page.services.news[-1]
     page.locus.menu.save(tmp_path / "no" / "such" / "folder.png")
-    assert "cannot be written" in inline.news[-1]
+    assert "cannot be written" in page.services.news[-1]
 
 
 def test_look_and_size_of_text_change_while_shown(page, theme, qtbot):
@@ -271,18 +271,18 @@ def test_look_and_size_of_text_change_while_shown(page, theme, qtbot):
         theme.set(name="light", scale=1.0)
 
 
-def test_layout_and_files_are_remembered(page, inline, qtbot, tmp_path, settled):
+def test_layout_and_files_are_remembered(page, qtbot, tmp_path, settled):
     settings = QSettings(str(tmp_path / "layout.ini"), QSettings.Format.IniFormat)
     page.open(brake=BRAKES / "plant.toml")
     qtbot.waitUntil(lambda: page.state.facts is not None and page.state.facts.name == "plant")
     settled(page.state)
     page.tabs.setCurrentIndex(2)
     page.save_layout(settings)
-    again = ModelPage(inline)
+    again = ModelPage(page.services)
     qtbot.addWidget(again)
     again.restore_layout(settings)
     again.activated()
-    qtbot.waitUntil(lambda: again.state.facts is not None and again.ranking.ranking is not None)
+    qtbot.waitUntil(lambda: again.state.facts is not None)
     assert again.state.facts.name == "plant"
     assert again.tabs.currentIndex() == 2
     again.deactivated()

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,6 +32,11 @@ def facts():
 @pytest.fixture(scope="module")
 def model():
     return read_model(BRAKES / "model.toml")
+
+
+@pytest.fixture(scope="module")
+def ranked(facts):
+    return studies.ranking(facts.file, Setting(0.4, 10.0, 0.0576), 0.1)
 
 
 def test_the_file_is_read_with_its_groups_and_their_sides(facts, model):
@@ -169,10 +175,9 @@ def test_two_equal_axes_are_refused(facts):
         studies.stability_map(facts.file, SETTING, axis, axis, 5)
 
 
-def test_ranking_is_the_studys_in_order_numbers_and_words(facts, model):
-    setting = Setting(0.4, 10.0, 0.0576)
-    found = studies.ranking(facts.file, setting, 0.1)
-    study = recommendation_study(model, setting.operating, step=0.1)
+def test_ranking_is_the_studys_in_order_numbers_and_words(ranked, model):
+    found = ranked
+    study = recommendation_study(model, ranked.setting.operating, step=0.1)
     table = study.table("ranking")
     assert [row.title for row in found.rows] == list(table.column("modification"))
     assert [row.verdict for row in found.rows] == list(table.column("verdict"))
@@ -182,10 +187,9 @@ def test_ranking_is_the_studys_in_order_numbers_and_words(facts, model):
     assert [advice_text(row, found) for row in found.rows[: len(said)]] == said
 
 
-def test_a_modification_as_sliders_is_the_modification(facts, model):
-    found = studies.ranking(facts.file, Setting(0.4, 10.0, 0.0576), 0.1)
+def test_a_modification_as_sliders_is_the_modification(facts, ranked, model):
     ways = {way.title: way for way in all_variations(model, 0.1)}
-    for row in found.rows:
+    for row in ranked.rows:
         members = {}
         for key, factor in row.factors.items():
             for member in facts.knob(key).members:
@@ -194,8 +198,8 @@ def test_a_modification_as_sliders_is_the_modification(facts, model):
 
 
 def test_measured_points_are_those_that_count(tmp_path):
-    def braking(index, squeals, mu=0.4, *, status="complete"):
-        values = dict.fromkeys(BrakingRow.__slots__)
+    def braking(index, squeals, mu: float | None = 0.4, *, status="complete"):
+        values: Any = dict.fromkeys(BrakingRow.__slots__)
         values |= {
             "index": index, "file": f"{index:05d}.h5", "status": status, "squeals": squeals, "mean_mu": mu,
             "pressure_mean_bar": 10.0, "sound_recorded": True, "evaluation_error": "",
@@ -203,7 +207,7 @@ def test_measured_points_are_those_that_count(tmp_path):
         return BrakingRow(**values)
 
     def event(braking, mu, *, harmonic=False):
-        values = dict.fromkeys(EventRow.__slots__)
+        values: Any = dict.fromkeys(EventRow.__slots__)
         values |= {"braking": braking, "status": "complete", "frequency_hz": 2140.0, "level_db": 90.0}
         return EventRow(**(values | {"mu": mu, "pressure_bar": 20.0, "harmonic": harmonic}))
 
@@ -221,10 +225,10 @@ def test_measured_points_are_those_that_count(tmp_path):
     assert points.squeals[0].file == tmp_path / "brakings" / "00001.h5"
 
 
-def test_ranking_is_written_as_the_command_line_writes_it(facts, tmp_path):
+def test_ranking_is_written_as_the_command_line_writes_it(facts, ranked, tmp_path):
     path = studies.write_ranking(facts.file, Setting(0.4, 10.0, 0.0576), 0.1, tmp_path / "mine.csv")
     lines = path.read_text().splitlines()
     assert lines[0].startswith("modification,verdict,gain [1/s]")
-    assert len(lines) == 1 + len(studies.ranking(facts.file, Setting(0.4, 10.0, 0.0576), 0.1).rows)
+    assert len(lines) == 1 + len(ranked.rows)
     with pytest.raises(ConfigError, match=r"\.csv"):
         studies.write_ranking(facts.file, SETTING, 0.1, tmp_path / "mine.doc")

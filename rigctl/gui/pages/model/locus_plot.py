@@ -40,6 +40,7 @@ class LocusPlot(pg.PlotWidget):
         self._theme = theme
         self._poles: Poles | None = None
         self._locus: LocusLines | None = None
+        self._mouse: QPointF | None = None
         self.setAccessibleName(self.tr("Plane of eigenvalues"))
         item: Any = self.getPlotItem()
         scene: Any = self.scene()
@@ -111,6 +112,8 @@ class LocusPlot(pg.PlotWidget):
         """Poles of the present sliders."""
         self._poles = poles
         self._draw_poles()
+        if self._mouse is not None:
+            self._point()
 
     def show_locus(self, locus: LocusLines | None) -> None:
         """Paths that belong to the present sliders."""
@@ -255,8 +258,11 @@ class LocusPlot(pg.PlotWidget):
         return f"{frequency_text(here.y())}, {quantity_text(here.x(), '1/s', 0)}"
 
     def _on_moved(self, place: QPointF) -> None:
-        inside = self._box.sceneBoundingRect().contains(place)
-        self.pointed.emit(self.text_at(place) if inside else "")
+        self._mouse = place if self._box.sceneBoundingRect().contains(place) else None
+        self._point()
+
+    def _point(self) -> None:
+        self.pointed.emit("" if self._mouse is None else self.text_at(self._mouse))
 
     def _on_clicked(self, event: Any) -> None:
         if event.button() == Qt.MouseButton.LeftButton:
@@ -268,4 +274,5 @@ class LocusPlot(pg.PlotWidget):
     def leaveEvent(self, ev: Any) -> None:
         """The read-out ends with the mouse."""
         super().leaveEvent(ev)
-        self.pointed.emit("")
+        self._mouse = None
+        self._point()
