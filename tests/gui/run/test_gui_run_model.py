@@ -90,6 +90,7 @@ def test_skipped_while_paused(model):
     model.fold(
         [started(1), record("verb", verb="pause", braking=1), record("state", state="paused", why="p")]
     )
+    model.fold([committed(1, "incomplete", note="pause by the operator")])  # the recorder is later
     assert model.rows[0].state is RowState.WAITING
     model.fold([
         record("verb", verb="skip", braking=1),

@@ -329,6 +329,9 @@ def test_the_result_is_said_once_with_what_is_left(run, rig, services, qtbot, tm
     assert services.shown == [("data", {"campaign": tmp_path / "campaign"})]
     click(run, qtbot, "resume")
     assert rig.asked == [("resume", (tmp_path / "campaign", ""), {})]
+    rig.refused.emit("Another process works on this campaign.")
+    refused = find(run, "run-refused", QLabel)
+    assert refused.isVisible() and "Another process" in refused.text()
 
 
 def test_after_a_complete_run_there_is_nothing_to_resume(run, rig, qtbot, tmp_path):

@@ -37,6 +37,7 @@ from rigctl.gui.widgets.live_slot import LiveSlot
 from rigctl.gui.widgets.rating_row import RATINGS
 
 _RIG_KEY = "manual-rig"
+LIVE_PANELS = ("waveform", "spectrum", "spectrogram", "level", "trend")  # the bars have trends of their own
 
 
 class ManualPage(Page):
@@ -52,7 +53,7 @@ class ManualPage(Page):
         self.readouts = Readouts(theme, self.model.scales())
         self.controls = Controls(theme, self.model, ranges)
         self.program = self._program_notice()
-        self.live = LiveSlot(services)
+        self.live = LiveSlot(services, LIVE_PANELS, hidden=("trend",))
         self.record = RecordRow(theme, ranges["duration"])
         self._build()
         self._wire()

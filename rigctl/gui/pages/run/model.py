@@ -200,10 +200,11 @@ class RunModel:
         status = values.get("status")
         if status == COMPLETE:
             row.state = RowState.COMPLETE
-            row.reason = ""
+            row.reason = str(values.get("note", ""))  # the comment of a braking by hand
         else:
             state = RowState.RECOVERED if status == RECOVERED else RowState.INCOMPLETE
-            if row.index == self.present and row.state in UNDER_WAY and self.end is None:
+            open_still = row.state in (*UNDER_WAY, RowState.WAITING)
+            if row.index == self.present and open_still and self.end is None:
                 self._broken[row.index] = state  # it may be tried again at once
                 return
             if row.state is not RowState.SKIPPED:

@@ -274,6 +274,8 @@ class RunPage(Page):
     def _on_refused(self, why: str) -> None:
         if self.scenes.currentWidget() is self.start:
             self.start.setNews("▲ " + why, "error")
+        else:
+            self.result.setNews(why)
 
     # -- news -------------------------------------------------------------------------------------
 
@@ -334,7 +336,7 @@ class RunPage(Page):
         self.verbs.setVisible(running)
         self.verbs.show_state(state, self.model.hold_asked)
         end = self.model.end if not running or state.mode == "program" else None
-        report = None if self.campaign is None else self.campaign / "report" / "report.html"
+        report = None if self.campaign is None or end is None else self.campaign / "report" / "report.html"
         tripped = state.word is Word.TRIPPED and not state.commander
         self.result.show_end(end, self.model, report, tripped=tripped)
 
@@ -379,6 +381,7 @@ class RunPage(Page):
             self._resume(self.campaign, reason)
 
     def _resume(self, campaign: Path, reason: str) -> None:
+        self.result.setNews("")
         self.services.rig.resume(campaign, reason)
 
     def _open_report(self) -> None:

@@ -35,12 +35,18 @@ class ResultPanel(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self._theme = theme
         self._tripped = False
+        self._told: tuple[object, ...] = ()
         self.title = QLabel()
         self.title.setObjectName("run-outcome")
         self.title.setWordWrap(True)
         self.text = QLabel()
         self.text.setObjectName("run-outcome-text")
         self.text.setWordWrap(True)
+        self.news = QLabel()
+        self.news.setObjectName("run-refused")
+        self.news.setProperty("look", "error")
+        self.news.setWordWrap(True)
+        self.news.hide()
         self.resume = self._button("resume", self.tr("&Resume"), self.tr("Do what is not complete"))
         self.resume.setProperty("look", "primary")
         self.reset = self._button(
@@ -63,6 +69,7 @@ class ResultPanel(QWidget):
         self._column.addWidget(self.title)
         self._column.addWidget(self.text)
         self._column.addLayout(self._row)
+        self._column.addWidget(self.news)
         self._column.addWidget(self.reason)
         self.reset_reason = AskLine(theme, "run-reset-reason", self.tr("Reset"))
         self.reset_reason.done.setToolTip(self.tr("Put it into the journal (Enter)"))
@@ -90,6 +97,11 @@ class ResultPanel(QWidget):
         self._row.setSpacing(self._theme.px(1))
         self.title.setFont(self._theme.font("normal", bold=True))
 
+    def setNews(self, text: str) -> None:
+        """Why something was refused, e.g. the report is still being made; "" for nothing."""
+        self.news.setText("▲ " + text if text else "")
+        self.news.setVisible(bool(text))
+
     def show_end(
         self, end: RunEnd | None, model: RunModel, report: Path | None, *, tripped: bool = False
     ) -> None:
@@ -100,7 +112,13 @@ class ResultPanel(QWidget):
             self.reset_reason.hide()
         if end is None:
             self.reason.hide()
+            self.setNews("")
             return
+        there = report is not None and report.is_file()
+        told = (end, tuple(model.not_done()), len(model.rows), there)
+        if told == self._told:
+            return
+        self._told = told
         self._tripped = end.outcome is Outcome.TRIPPED
         bad = end.outcome in (Outcome.TRIPPED, Outcome.FAILED)
         total = len(model.rows)
@@ -109,7 +127,6 @@ class ResultPanel(QWidget):
         self.title.style().polish(self.title)
         self.text.setText("\n".join(line for line in self._lines(end, model) if line))
         self.resume.setVisible(end.done < total)
-        there = report is not None and report.is_file()
         self.report.setEnabled(there)
         self.report.setToolTip(
             self.tr("Figures and report of the campaign, in the browser")

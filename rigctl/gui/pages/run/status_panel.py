@@ -81,8 +81,9 @@ class StatusPanel(QWidget):
         total = len(model.rows)
         done = model.count(RowState.COMPLETE)
         self.bar.setVisible(program)
-        self.bar.setRange(0, max(total, 1))
-        self.bar.setValue(done)
+        if (self.bar.maximum(), self.bar.value()) != (max(total, 1), done):  # each call paints at once
+            self.bar.setRange(0, max(total, 1))
+            self.bar.setValue(done)
         self.left.setText(time_text(state.left_s))
         self.end.setText("—" if state.left_s is None else end_text(now, state.left_s))
         self.factor.setText(self.tr("by the clock") if state.time == "real" else _factor(factor))

@@ -20,8 +20,8 @@ from rigctl.gui.theme import ThemeKeeper
 Index = QModelIndex | QPersistentModelIndex
 NO_PARENT = QModelIndex()
 NUMBER, SEQUENCE, STATE, TEMPERATURE, SPEED, PRESSURE, MU, LEVEL, FREQUENCY, RATING, NOTE = range(11)
-_WIDEST = ("0000", "matrix", "● conditioning", "000.0", "0000", "00.00", "0.000", "Squeal", "frequency",
-           "rating", "a note of some words")  # fmt: skip
+_WIDEST = ("0000", "Sequence", "● conditioning", "000.0", "0000", "00.00", "0.000", "Squeal", "frequency",
+           "rating", "a note")  # fmt: skip
 _KEYS = (Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_PageUp, Qt.Key.Key_PageDown, Qt.Key.Key_Home,
          Qt.Key.Key_End)  # fmt: skip
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
@@ -46,7 +46,9 @@ class BrakingTableModel(QAbstractTableModel):
             self.tr("Number in the program"),
             self.tr("Sequence of the program"),
             self.tr("What has become of the braking"),
-            self.tr("Set-point of the disc temperature at its start; — takes the disc as it is"),
+            self.tr(
+                "Set-point of the disc temperature at the start; (measured) where the disc is taken as it is"
+            ),
             self.tr("Set-point of the speed, at the beginning → at the end"),
             self.tr("Set-point of the pressure"),
             self.tr("Mean coefficient of friction"),
@@ -118,7 +120,7 @@ class BrakingTableModel(QAbstractTableModel):
             NUMBER: lambda: str(row.index),
             SEQUENCE: lambda: row.sequence,
             STATE: lambda: self._words[row.state],
-            TEMPERATURE: lambda: _plain(row.temperature_degc),
+            TEMPERATURE: lambda: _temperature(row),
             SPEED: lambda: _speed(row),
             PRESSURE: lambda: _plain(row.pressure_bar),
             NOTE: lambda: row.note,
@@ -173,6 +175,12 @@ def stretches(places: list[int]) -> list[tuple[int, int]]:
 
 def _plain(value: float | None) -> str:
     return "—" if value is None else f"{value:g}"
+
+
+def _temperature(row: Row) -> str:
+    if row.temperature_degc is None and row.start_degc is not None:
+        return f"({row.start_degc:.0f})"
+    return _plain(row.temperature_degc)
 
 
 def _speed(row: Row) -> str:

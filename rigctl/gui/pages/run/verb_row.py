@@ -32,6 +32,7 @@ class VerbRow(QWidget):
         self.setProperty("look", "panel")
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self._theme = theme
+        self._told: tuple[object, ...] = ()
         names = {
             Verb.PAUSE: self.tr("&Pause now"),
             Verb.HOLD: self.tr("&Hold after this"),
@@ -82,7 +83,11 @@ class VerbRow(QWidget):
         self._row.setSpacing(self._theme.px(1))
 
     def show_state(self, state: RigState, hold_asked: bool) -> None:
-        """What can be asked now."""
+        """What can be asked now; cheap when nothing of it has changed."""
+        told = (state.word, state.mode, state.commanding, hold_asked)
+        if told == self._told:
+            return
+        self._told = told
         program = state.mode == "program"
         for verb, button in self.buttons.items():
             permission = may(verb, state, hold_asked)
