@@ -18,7 +18,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QPushButton,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -30,7 +29,7 @@ from rigctl.gui.pages.service.devices_list import (
     rows_of_test,
     values_of_state,
 )
-from rigctl.gui.pages.service.parts import Panel, label, set_look
+from rigctl.gui.pages.service.parts import Panel, label, scrolled, set_look
 from rigctl.gui.rig.state import RigState
 from rigctl.gui.services import Services
 from rigctl.gui.theme import ThemeKeeper
@@ -157,15 +156,11 @@ class DevicesTab(QWidget):
         for card in self.cards.values():
             column.addWidget(card)
         column.addStretch(1)
-        area = QScrollArea()
-        area.setWidgetResizable(True)
-        area.setFrameShape(QScrollArea.Shape.NoFrame)
-        area.setWidget(inside)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(*(self._theme.px(1),) * 4)
         layout.setSpacing(self._theme.px(1))
         layout.addLayout(row)
-        layout.addWidget(area, 1)
+        layout.addWidget(scrolled(inside), 1)
         self._refresh = QTimer(self)
         self._refresh.setInterval(_REFRESH_MS)
         self._refresh.timeout.connect(self._show_values)

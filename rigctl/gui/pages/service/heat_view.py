@@ -25,7 +25,7 @@ from rigctl.core.channels import DISC_TEMPERATURE
 from rigctl.gui.format import number_text, quantity_text, signed_text
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.heat_guide import HeatGuide
-from rigctl.gui.pages.service.parts import FaultList, Form, Panel, PlainTable, label
+from rigctl.gui.pages.service.parts import FaultList, Form, Panel, PlainTable, label, scrolled
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import Reading
 from rigctl.gui.services import Services
@@ -50,14 +50,13 @@ class HeatView(Procedure):
         self._facts = FactsForm(
             self.theme, services.settings, "emissivity", self.tr("Contact thermometer"), days=180
         )
-        left, right = QVBoxLayout(), QVBoxLayout()
-        for column in (left, right):
-            column.setSpacing(self.theme.px(1))
+        inside = QWidget()
+        left = QVBoxLayout(inside)
+        left.setContentsMargins(0, 0, 0, 0)
         left.addWidget(self._steps())
         left.addStretch(1)
-        right.addWidget(self._result_panel(), 1)
-        self.content.addLayout(left, 4)
-        self.content.addLayout(right, 5)
+        self.content.addWidget(scrolled(inside), 4)
+        self.content.addWidget(self._result_panel(), 5)
         self._look = QTimer(self)
         self._look.setInterval(_LOOK_MS)
         self._look.timeout.connect(self._show_live)

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
     QPushButton,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -24,7 +23,7 @@ from PySide6.QtWidgets import (
 from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED, TORQUE
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.service.laboratory_client import LaboratoryClient
-from rigctl.gui.pages.service.parts import Form, Panel, label, set_look
+from rigctl.gui.pages.service.parts import Form, Panel, label, scrolled, set_look
 from rigctl.gui.services import Services
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.entries import NumberRange
@@ -128,16 +127,12 @@ class LaboratoryTab(QWidget):
         inside = QWidget()
         inside.setLayout(column)
         column.setContentsMargins(0, 0, 0, 0)
-        area = QScrollArea()
-        area.setWidgetResizable(True)
-        area.setFrameShape(QScrollArea.Shape.NoFrame)
-        area.setWidget(inside)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(*(self._theme.px(1),) * 4)
         layout.setSpacing(self._theme.px(1))
         layout.addWidget(self.teaching)
         layout.addWidget(self.news)
-        layout.addWidget(area, 1)
+        layout.addWidget(scrolled(inside), 1)
         self._look = QTimer(self)
         self._look.setInterval(_LOOK_MS)
         self._look.timeout.connect(self._on_look)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QFormLayout,
@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QHeaderView,
     QLabel,
     QProgressBar,
+    QScrollArea,
     QSizePolicy,
     QTableView,
     QTableWidget,
@@ -62,6 +63,28 @@ def pad_cells(table: QTableView, theme: ThemeKeeper) -> None:
     table.setStyleSheet(
         f"QTableView::item {{ padding: 0 {pad}px; }} QHeaderView::section {{ padding: {pad}px; }}"
     )
+
+
+class ScrollColumn(QScrollArea):
+    """A part that scrolls up and down, never sideways: when text is large or the window is small."""
+
+    def __init__(self, widget: QWidget) -> None:
+        super().__init__()
+        self.setWidgetResizable(True)
+        self.setFrameShape(QScrollArea.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setWidget(widget)
+        self._inner = widget
+
+    def minimumSizeHint(self) -> QSize:
+        """As wide as what is in it wants."""
+        inner = self._inner.minimumSizeHint().width()
+        return QSize(inner + self.verticalScrollBar().sizeHint().width(), super().minimumSizeHint().height())
+
+
+def scrolled(widget: QWidget) -> ScrollColumn:
+    """Short for `ScrollColumn`."""
+    return ScrollColumn(widget)
 
 
 class ThinBar(QProgressBar):

@@ -24,7 +24,7 @@ from rigctl.core.channels import MICROPHONE
 from rigctl.core.units import REFERENCE_PRESSURE_PA
 from rigctl.gui.format import number_text, quantity_text, signed_text
 from rigctl.gui.pages.service.form import FactsForm
-from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label
+from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label, scrolled
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import Reading
 from rigctl.gui.pages.service.sound_guide import RECORD_S, SoundGuide, read_and_evaluate
@@ -59,14 +59,13 @@ class SoundView(Procedure):
         self._job: Any = None
         self._facts = FactsForm(self.theme, services.settings, "microphone", self.tr("Calibrator"), days=90)
         self._facts.valueChanged.connect(self._show)
-        left, right = QVBoxLayout(), QVBoxLayout()
-        for column in (left, right):
-            column.setSpacing(self.theme.px(1))
+        inside = QWidget()
+        left = QVBoxLayout(inside)
+        left.setContentsMargins(0, 0, 0, 0)
         left.addWidget(self._steps())
         left.addStretch(1)
-        right.addWidget(self._result_panel(), 1)
-        self.content.addLayout(left, 4)
-        self.content.addLayout(right, 5)
+        self.content.addWidget(scrolled(inside), 4)
+        self.content.addWidget(self._result_panel(), 5)
         self._look = QTimer(self)
         self._look.setInterval(_LOOK_MS)
         self._look.timeout.connect(self._show_live)
@@ -143,9 +142,9 @@ class SoundView(Procedure):
     def _result_panel(self) -> QWidget:
         heads = (
             self.tr("Level"), self.tr("Sensitivity"), self.tr("Tone"), self.tr("Moves by"),
-            self.tr("Above the rest"),
+            self.tr("Above rest"),
         )  # fmt: skip
-        self.table = PlainTable(self.theme, heads, stretch=1)
+        self.table = PlainTable(self.theme, heads, stretch=4)
         self.table.setObjectName("sound-table")
         self.result = label(self.tr("No recording yet."), wrap=True)
         self.result.setObjectName("sound-result")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from rigctl.calibration.record import Point
 from rigctl.calibration.torque import TorqueAcceptance, TorqueResult
@@ -34,12 +34,13 @@ class TorquePlots(QWidget):
         self.line_plot = pg.PlotWidget()
         self.residual_plot = pg.PlotWidget()
         self.readout = label("", "muted")
+        theme.changed.connect(self._restyle)
         for plot, name in ((self.line_plot, "torque-line"), (self.residual_plot, "torque-residuals")):
             item: Any = plot.getPlotItem()
             item.setClipToView(False)
             item.showGrid(x=True, y=True, alpha=0.15)
             plot.setMouseEnabled(x=True, y=False)
-            plot.setMinimumHeight(theme.px(14))
+            plot.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
             self._menu = PictureMenu(plot, name, notify)
             scene: Any = plot.scene()
             scene.sigMouseMoved.connect(lambda place, plot=plot: self._on_mouse(plot, place))
@@ -50,7 +51,11 @@ class TorquePlots(QWidget):
         layout.addWidget(self.line_plot, 3)
         layout.addWidget(self.residual_plot, 2)
         layout.addWidget(self.readout)
-        theme.changed.connect(self._draw)
+        self._restyle()
+
+    def _restyle(self) -> None:
+        self.line_plot.setMinimumHeight(self._theme.px(20))
+        self.residual_plot.setMinimumHeight(self._theme.px(18))
         self._draw()
 
     def show_result(self, points: Sequence[Point], result: TorqueResult | None, full_nm: float) -> None:

@@ -24,7 +24,7 @@ from rigctl.core.errors import RigctlError
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.lever_form import LeverForm
-from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label
+from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label, scrolled
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.pages.service.sampler import MEASURE_S, Reading
 from rigctl.gui.pages.service.torque_guide import CHANNELS, TorqueGuide
@@ -49,14 +49,16 @@ class TorqueView(Procedure):
         )
         self.plots = TorquePlots(self.theme, services.notify)
         self._left = QStackedWidget()
-        self._left.addWidget(self._inputs())
+        self._left.addWidget(scrolled(self._inputs()))
         self._left.addWidget(self._steps())
-        right = QVBoxLayout()
+        inside = QWidget()
+        right = QVBoxLayout(inside)
+        right.setContentsMargins(0, 0, 0, 0)
         right.setSpacing(self.theme.px(1))
         right.addWidget(self.plots, 1)
         right.addWidget(self._result_panel())
         self.content.addWidget(self._left, 4)
-        self.content.addLayout(right, 5)
+        self.content.addWidget(scrolled(inside), 5)
         self._look = QTimer(self)
         self._look.setInterval(100)
         self._look.timeout.connect(self._show_share)
@@ -135,7 +137,7 @@ class TorqueView(Procedure):
         self.table = PlainTable(
             self.theme,
             (self.tr("Side"), self.tr("kg"), self.tr("N·m"), self.tr("Reading"), self.tr("Scatter")),
-            stretch=0,
+            stretch=3,
         )
         self.table.setObjectName("torque-table")
         self.table.itemSelectionChanged.connect(self._show_buttons)
