@@ -65,11 +65,17 @@ def joined(found, name):
     return np.concatenate([block.samples(name) for block in found])
 
 
-def assert_values(samples, expected, tolerance):
-    """All valid samples are right, and most are valid: a busy machine may lose some, never change any."""
-    valid = np.isfinite(samples)
-    assert np.mean(valid) > 0.8
-    assert samples[valid] == pytest.approx(expected, abs=tolerance)
+def assert_values(device, found, name, expected, tolerance, *, looks=6):
+    """All valid samples are right, and most are valid: a busy machine may lose some for a while, then it is
+    looked at again, but it never changes any."""
+    for _ in range(looks):
+        samples = joined(found, name)
+        valid = np.isfinite(samples)
+        assert samples[valid] == pytest.approx(expected, abs=tolerance)
+        if np.mean(valid) > 0.8:
+            return
+        found = blocks(device, len(found))
+    pytest.fail(f"most samples of {name} are not valid, {looks} times {len(found)} blocks long")
 
 
 def until_error(acquisition, match, *, seconds=8.0):
@@ -156,9 +162,9 @@ def test_blocks_follow_each_other_without_a_gap_in_any_channel(acquisition):
 def test_values_are_those_of_the_devices(rig, sound):
     with live(rig, {"microphone": MICROPHONE, **CAN_SOURCES}) as (device, _):
         found = blocks(device, 30)
-        assert_values(joined(found, "torque"), TORQUE_NM, 0.01)
-        assert_values(joined(found, "pressure"), PRESSURE_BAR, 0.001)
-        assert_values(joined(found, "disc_temperature"), DISC_DEGC, 0.05)
+        assert_values(device, found, "torque", TORQUE_NM, 0.01)
+        assert_values(device, found, "pressure", PRESSURE_BAR, 0.001)
+        assert_values(device, found, "disc_temperature", DISC_DEGC, 0.05)
         speed = joined(found, "speed")
         # the emulated shaft itself moves in steps where the machine is too busy to turn it
         assert float(np.nanmedian(speed)) == pytest.approx(SPEED_RPM, abs=0.5)
@@ -174,7 +180,7 @@ def test_values_are_those_of_the_devices(rig, sound):
 def test_without_a_microphone_the_machines_clock_leads(rig):
     with live(rig, {"bridge": CAN_SOURCES["bridge"]}) as (device, _):
         found = blocks(device, 10)
-        assert_values(joined(found, "torque"), TORQUE_NM, 0.01)
+        assert_values(device, found, "torque", TORQUE_NM, 0.01)
         assert device.ready_after_s < 1.0
 
 
@@ -199,7 +205,7 @@ def test_a_broken_bridge_is_never_a_torque(rig):
         torque = joined(found, "torque")
         assert np.all(np.isnan(torque[-200:]))
         assert np.nanmax(np.abs(torque - TORQUE_NM), initial=0.0) < 0.01
-        assert_values(joined(found, "pressure"), PRESSURE_BAR, 0.001)
+        assert_values(device, found, "pressure", PRESSURE_BAR, 0.001)
         assert "bridge: torque" in context.board.snapshot()["faults"]
         rig.can.disturb("amplifier", channel=1, broken=False)
         assert np.nanmedian(joined(blocks(device, 12), "torque")[-200:]) == pytest.approx(TORQUE_NM, abs=0.01)
