@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from rigctl.core.channels import MICROPHONE, ChannelSpec
 from rigctl.gui.live.buffer import HISTORY_S, Friction, LiveBuffer, Stretch
-from rigctl.gui.live.sound import LiveSpectrum
+from rigctl.gui.live.sound import LAF, LiveSpectrum
 
+SILENT_AFTER_S = 10.0
+"""Sound this much older than the newest block: none comes. In virtual time it is some seconds behind."""
 SLICE_S = 0.25
 """Sound is analysed in pieces of this length; one takes 1 to 4 ms."""
 BACKLOG_S, KEPT_S = 3.0, 1.5
@@ -149,6 +151,15 @@ class LiveData:
             if time.perf_counter() - begin > budget_s:
                 break
         return bool(self._backlog)
+
+    def level_db(self, name: str = LAF, over_s: float = 0.25) -> float:
+        """Newest sound level, mean of a moment; NaN when no sound comes (any more)."""
+        if self.sound is None:
+            return float("nan")
+        history = self.sound.levels[name]
+        if history.end_s < self.end_s - SILENT_AFTER_S:
+            return float("nan")
+        return history.mean(history.end_s - over_s, history.end_s)
 
     def note_setpoints(self, t_s: float, values: Mapping[str, float]) -> None:
         """Set-points by channel name that hold from now on."""

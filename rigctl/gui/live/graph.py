@@ -8,6 +8,7 @@ its job: header, mouse, items.
 from __future__ import annotations
 
 import pyqtgraph as pg
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem
 
 from rigctl.gui.live.axes import PlainAxis
@@ -26,6 +27,7 @@ class Graph(pg.GraphicsView):
         super().__init__()
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.enableMouse(False)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)  # nothing in it is for the tab key
         self.view = view
         frame = pg.GraphicsWidget()
         grid = QGraphicsGridLayout()

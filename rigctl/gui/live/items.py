@@ -107,7 +107,7 @@ class LimitItem(ViewItem):
             return
         view, (low, high) = self.boundingRect(), self.band
         tint = QColor(self.colour)
-        tint.setAlpha(40)
+        tint.setAlpha(26)
         painter.setPen(pen(self.colour, 1.0, Qt.PenStyle.DashLine))
         bottom, top = view.top(), view.bottom()  # the view's y points upwards
         for edge, outside, visible in (

@@ -17,10 +17,6 @@ SHARPNESS = 2.0
 """Pixels of a saved PNG per pixel of the screen."""
 
 
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("pictures", text)
-
-
 def copy_picture(widget: QWidget) -> None:
     """What the widget shows, to the clipboard."""
     QGuiApplication.clipboard().setPixmap(widget.grab())
@@ -72,11 +68,16 @@ def ask_and_save(widget: QWidget, name: str, notify: Callable[[str], None]) -> Q
     """
     folder = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.PicturesLocation)
     start = folder if folder and Path(folder).is_dir() else str(Path.home())
-    dialog = QFileDialog(widget.window(), _tr("Save picture"), start)
+    dialog = QFileDialog(widget.window(), QCoreApplication.translate("pictures", "Save picture"), start)
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.setModal(False)
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-    dialog.setNameFilters([_tr("Picture (*.png)"), _tr("Drawing (*.svg)")])
+    dialog.setNameFilters(
+        [
+            QCoreApplication.translate("pictures", "Picture (*.png)"),
+            QCoreApplication.translate("pictures", "Drawing (*.svg)"),
+        ]
+    )
     dialog.setDefaultSuffix("png")
     dialog.filterSelected.connect(lambda kind: dialog.setDefaultSuffix("svg" if "svg" in kind else "png"))
     dialog.selectFile(name)
@@ -85,9 +86,9 @@ def ask_and_save(widget: QWidget, name: str, notify: Callable[[str], None]) -> Q
         try:
             save_picture(widget, Path(file))
         except OSError as error:
-            notify(_tr("Picture not saved: {0}").format(error))
+            notify(QCoreApplication.translate("pictures", "Picture not saved: {0}").format(error))
         else:
-            notify(_tr("Picture saved as {0}").format(file))
+            notify(QCoreApplication.translate("pictures", "Picture saved as {0}").format(file))
 
     dialog.fileSelected.connect(save)
     dialog.show()

@@ -79,12 +79,16 @@ class CalmRange:
         self._symmetric = symmetric
         self._zero = zero
         self._small_since: float | None = None
+        self._fresh = True
         self.low, self.high = self._round(*start)
 
     def follow(self, low: float, high: float, now_s: float) -> tuple[float, float]:
         """The range for data between `low` and `high`; `now_s` is any clock."""
         wanted = self._round(low, high)
-        if wanted[0] < self.low or wanted[1] > self.high:
+        if self._fresh:
+            self._fresh = False
+            self.low, self.high = wanted
+        elif wanted[0] < self.low or wanted[1] > self.high:
             inside = wanted[0] >= self.low or wanted[1] <= self.high
             self.low, self.high = (min(self.low, wanted[0]), max(self.high, wanted[1])) if inside else wanted
             if self.high - self.low > (wanted[1] - wanted[0]) / SHRINK_BELOW:

@@ -16,7 +16,7 @@ from PySide6.QtGui import QColor
 
 from rigctl.gui.format import frequency_text, quantity_text
 from rigctl.gui.live.axes import PlainAxis
-from rigctl.gui.live.data import LiveData
+from rigctl.gui.live.data import SILENT_AFTER_S, LiveData
 from rigctl.gui.live.groups import TimeGroup, XGroup
 from rigctl.gui.live.items import LineItem, OutsideItem, pen
 from rigctl.gui.live.peaks import LiveEvent
@@ -28,8 +28,6 @@ from rigctl.gui.theme import ThemeKeeper
 LEVELS_DB = (0.0, 120.0)
 _MARKS = 4
 _ABOVE_DB = 4.0
-_STALE_S = 10.0
-"""In virtual time the sound may be some seconds behind."""
 
 
 class SpectrumPlot(LivePlot):
@@ -122,7 +120,7 @@ class SpectrumPlot(LivePlot):
     @staticmethod
     def _stale(data: LiveData, sound: LiveSpectrum) -> bool:
         """True when the rig goes on and sound has not come for long."""
-        return math.isfinite(sound.spectrum_s) and sound.spectrum_s < data.end_s - _STALE_S
+        return math.isfinite(sound.spectrum_s) and sound.spectrum_s < data.end_s - SILENT_AFTER_S
 
     def _why_empty(self, data: LiveData) -> str:
         if not math.isfinite(data.end_s):

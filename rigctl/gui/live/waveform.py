@@ -9,6 +9,7 @@ import math
 import time
 
 import numpy as np
+from PySide6.QtCore import QCoreApplication
 
 from rigctl.core.channels import MICROPHONE
 from rigctl.gui.format import number_text
@@ -29,11 +30,13 @@ def sound_hint(plot: TimePlot, data: LiveData) -> str:
     """Why there is no sound to be seen; empty when there is."""
     history = data.buffer.channels.get(MICROPHONE)
     if not math.isfinite(data.end_s):
-        return plot.tr("No signals yet. They appear when a rig is running.")
+        return QCoreApplication.translate("LivePlot", "No signals yet. They appear when a rig is running.")
     if history is None:
-        return plot.tr("This rig has no microphone.")
+        return QCoreApplication.translate("LivePlot", "This rig has no microphone.")
     if history.end_s < plot.stretch(data)[0]:
-        return plot.tr("No sound now. A simulated rig makes sound while a braking is recorded.")
+        return QCoreApplication.translate(
+            "LivePlot", "No sound now. A simulated rig makes sound while a braking is recorded."
+        )
     return ""
 
 

@@ -6,7 +6,6 @@ level. Not its job: the plots and what feeds them (`rigctl.gui.live`).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from rigctl.gui.live.view import LiveView
 
 LEVEL_EVERY_MS = 250
-LEVEL_OVER_S = 0.25
 _PREFIX = "live-"
 
 
@@ -95,14 +93,8 @@ class LiveSlot(QWidget):
 
     def _tell_level(self) -> None:
         from rigctl.gui.live.feed import LiveFeed
-        from rigctl.gui.live.sound import LAF
 
-        sound = LiveFeed.of(self._services).data.sound
-        level = math.nan
-        if sound is not None and not sound.levels[LAF].empty:
-            history = sound.levels[LAF]
-            level = history.mean(history.end_s - LEVEL_OVER_S, history.end_s)
-        self.levelChanged.emit(level)
+        self.levelChanged.emit(LiveFeed.of(self._services).data.level_db())
 
     # -- layout -----------------------------------------------------------------------------------
 

@@ -70,6 +70,7 @@ def test_signals_set_points_limits_and_mu_are_shown(running, acquisition, servic
     assert low < 150.0 and high > 160.0
     assert "squeal 2350" in view.panels["spectrum"].value.text()
     assert len(view.panels["spectrogram"]._boxes._boxes) == 1
+    assert view.feed.data.level_db() == pytest.approx(92.2, abs=0.2)
     assert "LAF 92" in view.panels["level"].value.text()
     assert "peak 1.00" in view.panels["waveform"].value.text()
 
@@ -318,6 +319,7 @@ def test_paused_rig_without_sound_says_so(running, acquisition):
     for plot in running.plots():
         plot._value_at = 0.0
     running._tick()
+    assert np.isnan(running.feed.data.level_db())
     assert "while a braking is recorded" in running.panels["waveform"].hint.text()
     assert running.panels["level"].value.text() == ""
     assert "squeal" not in running.panels["spectrum"].value.text()
