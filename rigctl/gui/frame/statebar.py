@@ -69,6 +69,7 @@ class StateBar(QWidget):
         top.addWidget(self.left)
         below = QHBoxLayout()
         below.setSpacing(self._theme.px(2))
+        below.addWidget(self.cause, 1)  # in place of the phase: nothing below moves when something trips
         below.addWidget(self.phase, 1)
         below.addWidget(self.commander)
         below.addWidget(self.disk)
@@ -76,7 +77,6 @@ class StateBar(QWidget):
         layout.setContentsMargins(*(self._theme.px(1),) * 4)
         layout.setSpacing(self._theme.px(0.5))
         layout.addLayout(top)
-        layout.addWidget(self.cause)
         layout.addLayout(below)
         self._restyle()
 
@@ -87,6 +87,8 @@ class StateBar(QWidget):
             label.setMinimumHeight(self._theme.px(4))
         for label in (self.phase, self.disk, self.commander):
             label.setFont(self._theme.font("small"))
+            label.setMinimumHeight(self._theme.px(3))
+        self.cause.setMinimumHeight(self._theme.px(3))
         self._paint_word(getattr(self, "_state", RigState()))
 
     def show_state(self, state: RigState) -> None:
@@ -95,7 +97,7 @@ class StateBar(QWidget):
         self.rig.setText(state.rig_name or self.tr("No rig is connected"))
         self.rig.setToolTip(state.rig_name)
         self._show_words(state)
-        running = state.mode == "program" and state.total > 0
+        running = state.mode == "program" and state.total > 0 and state.word is not Word.OFFLINE
         self.count.setVisible(running)
         self.bar.setVisible(running)
         if running:
@@ -138,6 +140,7 @@ class StateBar(QWidget):
         self._paint_word(state)
         cause = state.cause
         self.cause.setVisible(cause is not None)
+        self.phase.setVisible(cause is None)
         if cause is not None:
             self.cause.setProperty("look", "alarm")
             self.cause.setText("▲ " + " ".join(part for part in (cause.words, cause.remedy) if part))
