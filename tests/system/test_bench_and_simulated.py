@@ -67,7 +67,7 @@ def test_simulated_rig_and_bench_agree(
     print(text)  # seen where it fails
     assert code == 0 and found["agree"] and found["pairs"] == 6
     squeal = next(entry for entry in found["quantities"] if entry["name"] == "squeal_frequency_hz")
-    assert squeal["pairs"] >= 2 and squeal["mean_a"] == pytest.approx(2350.0, abs=10.0)
+    assert squeal["pairs"] == 4 and squeal["mean_a"] == pytest.approx(2350.0, abs=10.0)
 
     for path in sorted((tmp_path / "bench" / "brakings").glob("*.h5")):
         clocks = read_braking(path).clocks
