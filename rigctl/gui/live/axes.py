@@ -60,7 +60,9 @@ class PlainAxis(pg.AxisItem):
         self.take_look()
 
     def _parts(self, size: float) -> float:
-        return size / self._theme.px(2.25 if self.orientation in ("left", "right") else 9)
+        if self.orientation in ("left", "right"):
+            return max(size / self._theme.px(2.25), 3.0)
+        return size / self._theme.px(9)
 
     def tickSpacing(self, minVal: float, maxVal: float, size: float) -> list[tuple[float, float]]:
         """One level of ticks."""
