@@ -62,7 +62,12 @@ class ActionsBar(QWidget):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addLayout(self._flow)
-        for part in (self.reason, self.tag):
+        for part, tip in (
+            (self.reason, self.tr("Why these brakings must not count; the report prints it")),
+            (self.tag, self.tr("Up to 40 letters, no comma")),
+        ):
+            part.edit.setToolTip(tip)
+            part.done.setToolTip(self.tr("Enter"))
             self._column.addWidget(part)
         self._column.addLayout(done_row)
         self.compare_button.clicked.connect(self.compare)

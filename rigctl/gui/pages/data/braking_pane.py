@@ -41,6 +41,8 @@ class BrakingPane(QWidget):
         self._path: Path | None = None
         self._job: Job | None = None
         self._stamp: tuple[int, int] | None = None
+        self._said = Annotation()
+        self._problem = ""
         self.view: BrakingView | None = None
         theme = services.theme
         self.title = ElidedLabel()
@@ -114,6 +116,7 @@ class BrakingPane(QWidget):
     def show_nothing(self) -> None:
         """No braking is chosen."""
         self._entry = self._path = self.view = self._stamp = None
+        self._problem = ""
         self._drop_job()
         self.title.setText(self.tr("No braking chosen"))
         self._say(self.tr("Choose a braking in the table, or click a dot or a cell in a figure."))
@@ -131,6 +134,7 @@ class BrakingPane(QWidget):
         if same and stamp == self._stamp:
             return
         self._stamp = stamp
+        self._problem = ""
         self._drop_job()
         self.sound.show_braking(None, "", None)
         self._said = said
@@ -168,8 +172,8 @@ class BrakingPane(QWidget):
         if path != self._path:
             return
         self._job = None
+        self._problem = words
         self._fill(None)
-        self._say(words)
 
     def _fill(self, view: BrakingView | None) -> None:
         self.view = view
@@ -183,8 +187,6 @@ class BrakingPane(QWidget):
         self.metadata.show_lines(self._metadata(view) if view else [])
         self._show_words(self._said)
 
-    _said = Annotation()
-
     def _show_words(self, said: Annotation) -> None:
         self._said = said
         entry = self._entry
@@ -194,7 +196,9 @@ class BrakingPane(QWidget):
         marks = tuple(marks_of(entry.marks))
         self.notes.show_entry(entry, said.said, said.note, marks)
         row = entry.row
-        if row.excluded:
+        if self._problem:
+            self._say(self._problem)
+        elif row.excluded:
             self._say(self.tr("Excluded, does not count: {0} ({1})").format(row.excluded, row.excluded_by))
         elif entry.trashed:
             self._say(self.tr("In the trash: “rigctl resume” would do this braking again."))

@@ -155,6 +155,10 @@ class FiguresPane(QWidget):
         """Compute and read nothing more."""
         self._settle.stop()
         self.loader.close()
+        for job in self._jobs:
+            if job is not None:
+                job.cancel()
+        self._jobs = [None, None]
 
     @property
     def busy(self) -> bool:

@@ -66,7 +66,7 @@ class CampaignLoader(QObject):
     @property
     def busy(self) -> bool:
         """True while files are being read."""
-        return self._scan is not None or self._piece is not None
+        return self._scan is not None or self._piece is not None or bool(self._waiting)
 
     def open(self, campaign: Path) -> None:
         """Read another campaign; what was being read is dropped."""
@@ -123,6 +123,8 @@ class CampaignLoader(QObject):
         if campaign != self.campaign:
             return
         self.said, self._stamp = found.said, found.stamp
+        self._waiting = found.stale
+        self._total = len(found.stale)
         if first:
             self._entries = {entry.name: entry for entry in found.entries}
             self.opened.emit(found.entries)
@@ -134,8 +136,6 @@ class CampaignLoader(QObject):
             self._entries.update((entry.name, entry) for entry in changed)
             if gone or changed:
                 self.changed.emit(changed, gone)
-        self._waiting = found.stale
-        self._total = len(found.stale)
         self._next()
 
     def _next(self) -> None:

@@ -113,6 +113,17 @@ class DataPage(Page):
         self.braking.stop_sound()
         self.figures.set_active(False)
 
+    def stop_reading(self) -> None:
+        """Results that are still to come are not wanted any more."""
+        self.deactivated()
+        self.loader.close()
+        self.figures.close_jobs()
+        self.braking.show_nothing()
+        self.compare.show_nothing()
+        if self._scan is not None:
+            self._scan.cancel()
+            self._scan = None
+
     def refresh(self) -> None:
         """Campaigns of the folder, changes of the open one."""
         if self._scan is None:
@@ -243,9 +254,10 @@ class DataPage(Page):
             return
         braking = self._wanted[1]
         if braking is None:
-            self._wanted = None
-            if not self.table.chosen() and self.table.model.rowCount():
+            if self.table.model.rowCount() and not self.table.chosen():
                 self.table.choose([self.table.model.entry(0).name])
+            if self.table.chosen() or not self.loader.busy:
+                self._wanted = None
             return
         found = self.table.model.list.of_braking(braking)
         names = [entry.name for entry in sorted(found, key=lambda e: e.trashed)]
@@ -311,8 +323,6 @@ class DataPage(Page):
         settings.setValue("export-folder", self.export.folder.text())
         settings.setValue("campaign", str(self.loader.campaign or ""))
         self.table.save(settings)
-        self.loader.close()
-        self.figures.close_jobs()
 
     def restore_layout(self, settings: QSettings) -> None:
         """As saved; what has gone since is passed over."""

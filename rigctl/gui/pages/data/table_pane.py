@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import partial
+from typing import Any
 
 from PySide6.QtCore import QItemSelection, QItemSelectionModel, QPoint, QSettings, Qt, Signal
 from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
@@ -152,8 +153,8 @@ class TablePane(QWidget):
     def _on_selection(self) -> None:
         if self._quiet:
             return
-        stretches = self.view.selectionModel().selection()
-        rows = {row for part in list(stretches) for row in range(part.top(), part.bottom() + 1)}
+        stretches: Any = self.view.selectionModel().selection()  # a list of ranges
+        rows = {row for part in stretches for row in range(part.top(), part.bottom() + 1)}
         self._chosen = [self.model.entry(row).name for row in sorted(rows)]
         self._tell()
 
