@@ -10,7 +10,7 @@
 unexport PYTHONDONTWRITEBYTECODE
 
 .DELETE_ON_ERROR:
-.PHONY: help run gui figures test system lint types lock clean
+.PHONY: help run gui translations screenshots figures test system lint types lock clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -26,6 +26,12 @@ run: $(VENV)/.run
 
 gui: $(VENV)/.run
 	$(BIN)/rigctl gui $(GUI_ARGS)
+
+# Texts of the window: collected from the code, German in rigctl/gui/translations/rigctl_de.ts, then compiled.
+translations: $(VENV)/.dev
+	$(BIN)/pyside6-lupdate -silent -no-obsolete -locations none \
+		$$(find rigctl/gui -name '*.py' | LC_ALL=C sort) -ts rigctl/gui/translations/rigctl_de.ts
+	$(BIN)/pyside6-lrelease rigctl/gui/translations/rigctl_de.ts
 
 figures: $(VENV)/.run
 	$(BIN)/rigctl model figures --out figures
