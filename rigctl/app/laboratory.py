@@ -1,14 +1,13 @@
 """`rigctl laboratory …`: faults and stimuli on a running simulated rig.
 
-Job: find the running rig, the command, the words of its answer. Not its job: what a stimulus does
-(`sim_hardware.devices.stimuli`).
+Job: find the running rig, the command. Not its job: what a stimulus does (`sim_hardware.devices.stimuli`).
 """
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
@@ -48,7 +47,7 @@ def _laboratory(
 ) -> None:
     """Make something go wrong on the running simulated rig, or mend it: emergency stop, doors, sensors, …"""
     from rigctl.app.sessions import the_session
-    from sim_hardware.devices.laboratory import Laboratory
+    from sim_hardware.devices.laboratory import Laboratory, in_force
 
     with Laboratory(the_session(campaign).run_dir) as laboratory:
         answer = laboratory.ask(do, **parsed_fields(fields or [], "rigctl laboratory"))
@@ -58,29 +57,3 @@ def _laboratory(
     console = Console(soft_wrap=True)
     for line in in_force(answer) or ["Nothing is disturbed."]:
         console.print(escape(line), highlight=False)
-
-
-def in_force(answer: dict[str, Any]) -> list[str]:
-    """What an answer says is in force, a line each."""
-    lines = []
-    if answer["estop_pressed"]:
-        lines.append("The emergency stop is pressed.")
-    if answer["doors_open"]:
-        lines.append("A door is open.")
-    for channel, fault in answer["sensors"].items():
-        value = f" by {fault['value']:g}" if fault["mode"] == "offset" else ""
-        who = "" if fault["seen_by"] == "both" else f" (seen by the {fault['seen_by']} only)"
-        lines.append(f"Sensor {channel}: {fault['mode']}{value}{who}.")
-    if answer["vent_valve_stuck"]:
-        lines.append("The vent valve is stuck.")
-    if answer["weight_nm"]:
-        lines.append(f"A lever puts {answer['weight_nm']:g} N·m on the torque sensor.")
-    if answer["calibrator_db"]:
-        lines.append(f"A calibrator gives {answer['calibrator_db']:g} dB at the microphone.")
-    if answer["drift_db"]:
-        lines.append(f"The microphone has drifted by {answer['drift_db']:+g} dB.")
-    for request in answer["waiting"]:
-        fields = ((key, value) for key, value in request.items() if key not in ("do", "at_s"))
-        words = ", ".join(f"{key}={value}" for key, value in fields)
-        lines.append(f"At {request['at_s']:g} s of rig time: {request['do']} {words}".rstrip())
-    return lines

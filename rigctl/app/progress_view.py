@@ -14,9 +14,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
 from rigctl.app.durations import duration_text
+from rigctl.app.pace import Pace
 from rigctl.engine.state import Progress
 from sequences.capabilities import RigCapabilities
-from sequences.estimate import ThermalWalk
 from sequences.program import Program
 
 PLAIN_LINE_EVERY_S = 5.0
@@ -27,9 +27,7 @@ class ProgressView:
 
     def __init__(self, console: Console, program: Program | None, capabilities: RigCapabilities) -> None:
         self._console = console
-        self._cumulated_s = [0.0] if program is None else _cumulated(program, capabilities)
-        self._started = time.monotonic()
-        self._first: tuple[float, float] | None = None
+        self._pace = None if program is None else Pace(program, capabilities)
         self._line_at = 0.0
         self._bar = Bar(
             TextColumn("{task.fields[state]}"),
@@ -78,36 +76,9 @@ class ProgressView:
         ]
         if progress.incomplete:
             parts.append(f"{progress.incomplete} incomplete")
-        factor, left = self._pace(progress)
-        if factor is not None:
-            parts.append(f"{factor:.0f}× real time")
+        left = None if self._pace is None else self._pace.left_s(progress)
+        if self._pace is not None and self._pace.factor is not None:
+            parts.append(f"{self._pace.factor:.0f}× real time")
         if left is not None:
             parts.append(f"{duration_text(left)} left")
         return "  ".join(parts)
-
-    def _pace(self, progress: Progress) -> tuple[float | None, float | None]:
-        """Rig seconds per wall second, and wall seconds left by the estimate of the dry run."""
-        if progress.mode == "manual":
-            return None, None
-        done_s = self._cumulated_s[max(progress.braking - 1, 0)]
-        now = time.monotonic()
-        if self._first is None:
-            self._first = (now, done_s)
-            return None, None
-        elapsed = now - self._first[0]
-        progressed = done_s - self._first[1]
-        if elapsed < 1.0:
-            return None, None
-        factor = progress.rig_s / elapsed
-        left = (self._cumulated_s[-1] - done_s) * elapsed / progressed if progressed > 0 else None
-        return factor, left
-
-
-def _cumulated(program: Program, capabilities: RigCapabilities) -> list[float]:
-    """Estimated rig time at the start of each braking, and at the end: n + 1 values."""
-    walk = ThermalWalk(capabilities, None)
-    times = [0.0]
-    for braking in program.brakings():
-        walk.step(braking)
-        times.append(walk.estimate.total_s)
-    return times

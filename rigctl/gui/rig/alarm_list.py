@@ -92,7 +92,7 @@ class AlarmList:
                 changed |= self.acknowledge(
                     str(payload.get("alarm", "")), str(payload.get("who") or record.source), record.utc
                 )
-            elif (record.source, record.kind) == ("watchdog", "reset"):
+            elif (record.source, record.kind) in (("watchdog", "reset"), ("operator", "trip_acknowledged")):
                 changed |= self._reset(record)
             elif (found := found_in(record)) is not None:
                 self.raise_alarm(found.key, found.severity, found.words, found.remedy, record.utc)

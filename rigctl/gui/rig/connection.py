@@ -20,11 +20,12 @@ from typing import Any
 from PySide6.QtCore import QObject, QSocketNotifier, QTimer, Signal
 
 from rigctl.app.control_socket import COMMAND, Answer, Blocks, Commander, ControlClient
+from rigctl.app.pace import Pace
 from rigctl.app.sessions import Session, alive, running_sessions
 from rigctl.core.errors import ConfigError, DeviceError, LinkClosed
 from rigctl.core.journal import Journal, Record
 from rigctl.engine.state import Progress, RunResult, Verb
-from rigctl.gui.rig.fold import Pace, after_loss, after_result, with_progress, with_record
+from rigctl.gui.rig.fold import after_loss, after_result, with_progress, with_record
 from rigctl.gui.rig.journal_tail import JournalTail
 from rigctl.gui.rig.launch import Launch
 from rigctl.gui.rig.state import RigState, Word

@@ -5,18 +5,11 @@ Job: the one word, the readings, the cause. Not its job: where news come from (`
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 from rigctl.core.journal import Record
 from rigctl.engine.state import Outcome, Progress, RunResult, State
 from rigctl.gui.rig.state import Readings, RigState, SafetyCause, Word
-from sequences.capabilities import RigCapabilities
-from sequences.estimate import ThermalWalk
-from sequences.program import Program
-
-MOST_WALKED = 3000  # brakings; longer programs are estimated by their mean pace
-LEAST_ELAPSED_S = 1.0
 
 
 def word_of(progress: Progress) -> Word:
@@ -119,37 +112,3 @@ def after_loss(state: RigState, *, safe: bool) -> RigState:
 def _sentence(text: str) -> str:
     text = text.strip()
     return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!")) else ".")
-
-
-class Pace:
-    """Time left of a program, by the dry run's estimate and the pace so far.
-
-    Parameters
-    ----------
-    program : Program
-    capabilities : RigCapabilities
-    """
-
-    def __init__(self, program: Program, capabilities: RigCapabilities) -> None:
-        self._starts_s = [0.0]
-        if program.count <= MOST_WALKED:
-            walk = ThermalWalk(capabilities, None)
-            for braking in program.brakings():
-                walk.step(braking)
-                self._starts_s.append(walk.estimate.total_s)
-        else:
-            self._starts_s = [float(number) for number in range(program.count + 1)]
-        self._first: tuple[float, float] | None = None
-
-    def left_s(self, progress: Progress, now_s: float | None = None) -> float | None:
-        """Wall-clock seconds left; None until there is a pace to go by."""
-        now_s = time.monotonic() if now_s is None else now_s
-        at = min(max(progress.braking - 1, 0), len(self._starts_s) - 1)
-        done_s = self._starts_s[at]
-        if self._first is None:
-            self._first = (now_s, done_s)
-            return None
-        elapsed_s, progressed_s = now_s - self._first[0], done_s - self._first[1]
-        if elapsed_s < LEAST_ELAPSED_S or progressed_s <= 0.0:
-            return None
-        return (self._starts_s[-1] - done_s) * elapsed_s / progressed_s
