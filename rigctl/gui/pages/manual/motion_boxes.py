@@ -84,7 +84,7 @@ class SpeedBox(ControlBox):
         self.stop = self.button("stop-motor", self.tr("Stop &motor"))
         self.name(self.tr("&Speed"), self.speed, 0)
         self.grid.addWidget(self.speed, 0, 1, 1, 2)
-        self.name(self.tr("Ram&p"), self.ramp, 1)
+        self.name(self.tr("Ramp"), self.ramp, 1)
         self.grid.addWidget(self.ramp, 1, 1, 1, 2)
         self.grid.addWidget(self.set, 2, 1)
         self.grid.addWidget(self.stop, 2, 2)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSettings, Qt
+from PySide6.QtCore import QSettings, Qt, QTimer
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QApplication,
@@ -48,6 +48,7 @@ class ManualPage(Page):
         theme = services.theme
         self.model = ManualModel()
         self._active = False
+        self._arranged = False
         ranges = common_ranges()
         self.panel = ConnectPanel(theme)
         self.readouts = Readouts(theme, self.model.scales())
@@ -132,7 +133,7 @@ class ManualPage(Page):
         self._program_column.setContentsMargins(t.px(1), 0, t.px(1), 0)
         self._program_column.setSpacing(t.px(1))
         self.splitter.setHandleWidth(t.px(0.25))
-        self._left.setMinimumWidth(t.px(26))
+        self._left.setMinimumWidth(t.px(29))
         self.live.setMinimumWidth(t.px(12))
 
     def _wire(self) -> None:
@@ -186,6 +187,7 @@ class ManualPage(Page):
         """As left."""
         state = settings.value("columns")
         if state is not None:
+            self._arranged = True
             self.splitter.restoreState(state)
         self.live.restore_layout(settings)
 
@@ -258,6 +260,9 @@ class ManualPage(Page):
             return
         if self._active:
             self.live.start()
+            if not self._arranged:
+                self._arranged = True
+                QTimer.singleShot(0, self, self._arrange)
         self.readouts.show_state(state)
         self.middle.setCurrentIndex(0 if scene is Scene.MANUAL else 1)
         self.record.setVisible(scene is Scene.MANUAL)
@@ -266,6 +271,10 @@ class ManualPage(Page):
             self.controls.show_model()
             self._show_record()
             self.record.setProgress(self.model.recording_progress())
+
+    def _arrange(self) -> None:
+        """Without a remembered layout: readings and controls as narrow as they may be."""
+        self.splitter.setSizes([1, 1, 10_000])
 
     # -- recording --------------------------------------------------------------------------------
 

@@ -88,7 +88,7 @@ class RecordRow(QWidget):
         self._entries: list[QWidget] = [
             labelled(self.tr("Duration in s"), self.duration),
             self.duration,
-            labelled(self.tr("&Comment"), self.comment),
+            labelled(self.tr("Comme&nt"), self.comment),
             self.comment,
         ]
         for widget in self._entries:

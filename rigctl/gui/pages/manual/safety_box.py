@@ -35,7 +35,7 @@ class SafetyBox(QWidget):
         self.text.setWordWrap(True)
         self.take = self._button("take-command", self.tr("&Take command"))
         self.take.setToolTip(self.tr("Command from this window; whoever commands now is told"))
-        self.reset = self._button("reset", self.tr("Rese&t…"))
+        self.reset = self._button("reset", self.tr("Res&et…"))
         self.reset.setToolTip(
             self.tr("Acknowledge the trip in your words. The rig is locked then; nothing moves by it.")
         )

@@ -60,6 +60,7 @@ class OccurrenceView(QWidget):
         self._item.addItem(self._image)
         self._item.addItem(self._dots)
         self._menu = PictureMenu(self.plot, "occurrence", services.notify)
+        self._item.vb.sigResized.connect(self._on_resized)
         scene: Any = self.plot.scene()
         scene.sigMouseMoved.connect(self._on_moved)
         scene.sigMouseClicked.connect(self._on_clicked)
@@ -141,7 +142,17 @@ class OccurrenceView(QWidget):
             if level is not None:
                 dots.append({"pos": (place[1], place[0]), "brush": _dot_colour(colour)})
         self._image.setImage(image, levels=None, rect=(-0.5, -0.5, shape[1], shape[0]))
-        self._dots.setData(dots, size=t.px(0.75), pen=None)
+        self._dots.setData(dots, size=self._dot_size(), pen=None)
+
+    def _dot_size(self) -> float:
+        """A third of a cell, so that dots never touch."""
+        box = self._item.vb
+        lines, columns = max(len(self._temperatures), 1), max(len(self._pressures), 1)
+        cell = min(box.height() / lines, box.width() / columns)
+        return min(max(cell / 3.0, 1.0), float(self._theme.px(1)))
+
+    def _on_resized(self) -> None:
+        self._dots.setSize(self._dot_size())
 
     # -- mouse ------------------------------------------------------------------------------------
 

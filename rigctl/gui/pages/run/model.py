@@ -274,7 +274,8 @@ class RunModel:
         row = self.row(self.present)
         if row is not None and row.state in UNDER_WAY:
             row.state = self._broken.get(row.index, RowState.WAITING)
-            row.reason = row.reason or str(values.get("cause", ""))
+            if row.state is not RowState.WAITING:
+                row.reason = row.reason or str(values.get("cause", ""))
             self._changed.add(row.index)
         before = self.end
         tripped = values.get("outcome") == Outcome.TRIPPED

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QPushButton,
+    QSizePolicy,
     QSplitter,
     QStackedWidget,
     QVBoxLayout,
@@ -94,14 +95,14 @@ class RunPage(Page):
         self.count = QLabel()
         self.count.setObjectName("run-count")
         self.count.setProperty("look", "title")
-        self.follow = QPushButton(self.tr("&Follow"))
+        self.count.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.follow = QPushButton(self.tr("Follow"))
         self.follow.setObjectName("run-follow")
         self.follow.setCheckable(True)
         self.follow.setChecked(True)
         self.follow.setToolTip(self.tr("Keep the present braking in sight; scrolling by hand ends it"))
         self._head = QHBoxLayout()
-        self._head.addWidget(self.count)
-        self._head.addStretch(1)
+        self._head.addWidget(self.count, 1)
         self._head.addWidget(self.follow)
         left = QWidget()
         self._left_column = QVBoxLayout(left)
@@ -150,8 +151,8 @@ class RunPage(Page):
         self._left_column.setContentsMargins(0, 0, t.px(1), 0)
         for splitter in (self.splitter, self.right):
             splitter.setHandleWidth(t.px(0.25))
-        self.map.setMinimumHeight(t.px(20))
-        self.live.setMinimumHeight(t.px(12))
+        self.map.setMinimumHeight(t.px(16))
+        self.live.setMinimumHeight(t.px(10))
 
     def _wire(self) -> None:
         rig = self.services.rig

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from rigctl.engine.state import Verb
 from rigctl.gui.pages.run.verbs import VERBS, consequence, may
@@ -42,7 +43,8 @@ class VerbRow(QWidget):
             Verb.STOP: self.tr("&Abort…"),
         }
         self.buttons: dict[Verb, QPushButton] = {}
-        self._row = QHBoxLayout()
+        self._verbs = QWidget()
+        self._row = QHBoxLayout(self._verbs)
         for verb in VERBS:
             button = QPushButton(names[verb])
             button.setObjectName(f"verb-{verb.value}")
@@ -60,14 +62,21 @@ class VerbRow(QWidget):
         self.note = QPushButton(self.tr("&Note  (N)"))
         self.note.setObjectName("run-note")
         self.note.setToolTip(self.tr("A note with the time, stored with the present braking"))
+        self._marks = QWidget()
+        self._mark_row = QHBoxLayout(self._marks)
         for widget in (self.rating_name, self.rating, self.note):
-            self._row.addWidget(widget)
+            self._mark_row.addWidget(widget)
+        self._grid = QGridLayout()
+        self._grid.setColumnStretch(0, 1)
+        self._grid.addWidget(self._verbs, 0, 0)
+        self._grid.addWidget(self._marks, 0, 1)
+        self._side_by_side = True
         self.confirm = InlineConfirm(theme, "abort-confirm", self.tr("Abort the run"))
         self.confirm.yes.setToolTip(consequence(Verb.STOP))
         self.note_line = AskLine(theme, "note-line", self.tr("Write"))
         self.note_line.done.setToolTip(self.tr("Put it into the journal (Enter)"))
         self._column = QVBoxLayout(self)
-        self._column.addLayout(self._row)
+        self._column.addLayout(self._grid)
         self._column.addWidget(self.confirm)
         self._column.addWidget(self.note_line)
         self.rating.valueChanged.connect(self.rated)
@@ -80,7 +89,34 @@ class VerbRow(QWidget):
     def _restyle(self) -> None:
         self._column.setContentsMargins(*(self._theme.px(1),) * 4)
         self._column.setSpacing(self._theme.px(1))
-        self._row.setSpacing(self._theme.px(1))
+        for layout in (self._row, self._mark_row, self._grid):
+            layout.setSpacing(self._theme.px(1))
+            layout.setContentsMargins(0, 0, 0, 0)
+        self._arrange()
+
+    # -- room -------------------------------------------------------------------------------------
+
+    def minimumSizeHint(self) -> QSize:
+        """As wide as the wider of the two groups: the other can go below it."""
+        whole = super().minimumSizeHint()
+        widest = max(self._verbs.minimumSizeHint().width(), self._marks.minimumSizeHint().width())
+        return QSize(widest + 2 * self._theme.px(1), whole.height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """In a narrow window rating and note go into a line of their own."""
+        super().resizeEvent(event)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        needed = self._verbs.minimumSizeHint().width() + self._marks.minimumSizeHint().width()
+        side_by_side = self.width() >= needed + 3 * self._theme.px(1)
+        if side_by_side is not self._side_by_side:
+            self._side_by_side = side_by_side
+            self._grid.removeWidget(self._marks)
+            place = (0, 1) if side_by_side else (1, 0)
+            self._grid.addWidget(self._marks, *place, Qt.AlignmentFlag.AlignRight)
+
+    # -- what can be asked ------------------------------------------------------------------------
 
     def show_state(self, state: RigState, hold_asked: bool) -> None:
         """What can be asked now; cheap when nothing of it has changed."""
