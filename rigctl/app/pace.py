@@ -1,6 +1,7 @@
 """How fast a program goes, and how long it will still take.
 
-Job: time left by the dry run's estimate and the pace so far; for terminal and window. Not its job: showing it.
+Job: time left by the dry run's estimate and the pace so far; for terminal and window. Not its job: showing
+it.
 """
 
 from __future__ import annotations
