@@ -92,7 +92,8 @@ class FaultLabel(QLabel):
             self.setProperty("look", severity)
             self.style().unpolish(self)
             self.style().polish(self)
-        self.setText(("▲ " if severity == "warning" else "✕ ") + text if text else "")
+        mark = "▲ " if severity == "warning" else "✕ "
+        self.setText("\n".join(mark + line for line in text.splitlines()))
         self.setVisible(bool(text))
 
 

@@ -90,6 +90,7 @@ def test_readiness_in_words() -> None:
     assert "Checking" in why_not(draft, [], None, RIG, idle)
     running = replace(idle, mode="program", word=Word.RUNNING)
     assert "running" in why_not(draft, [], result, RIG, running)
+    assert "being started" in why_not(draft, [], result, RIG, replace(idle, word=Word.STARTING))
     assert why_not(draft, [], result, RIG, replace(idle, mode="program", word=Word.LOCKED)) == ""
     sequence = draft.form.sequences[0]
     draft.set_sequence(replace(sequence, repeat="x"), "repeat")

@@ -53,7 +53,7 @@ class _Head(QWidget):
         self.role = QComboBox()
         self.role.setToolTip(self.tr("What the brakings are for; the evaluation looks at it"))
         self.role.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.role.setMinimumContentsLength(8)
+        self.role.setMinimumContentsLength(6)
         for role in ROLES:
             self.role.addItem(name_of(role), role)
         self.enabled = QCheckBox(self.tr("run it"))
@@ -91,6 +91,7 @@ class _Head(QWidget):
     def _restyle(self) -> None:
         self._grid.setHorizontalSpacing(self._theme.px(1.5))
         self._grid.setVerticalSpacing(self._theme.px(0.25))
+        self.name.setMinimumWidth(self._theme.px(9))
         self.repeat.setFixedWidth(self._theme.px(7))
 
     def show_faults(self, faults: Faults) -> None:
@@ -158,6 +159,7 @@ class SequenceEditor(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:
         """In a tall window the set-points stand above the tabs, always in sight."""
         super().resizeEvent(event)
+        self.temperature.show_width(self.width())
         self._pin(self.height() >= self._theme.px(TALL_UNITS))
 
     def _pin(self, pinned: bool) -> None:

@@ -14,31 +14,24 @@ from typing import Any
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
-    QLabel,
-    QScrollArea,
-    QSplitter,
     QStackedWidget,
     QVBoxLayout,
-    QWidget,
 )
 
 from rigctl.config.rig import RigConfig
 from rigctl.gui.pages.base import Page
 from rigctl.gui.pages.sequence.checking import Fault, rig_faults
 from rigctl.gui.pages.sequence.draft import ProgramDraft, new_sequence
-from rigctl.gui.pages.sequence.editor import SequenceEditor
 from rigctl.gui.pages.sequence.empty_state import EmptyState
 from rigctl.gui.pages.sequence.files import ProgramFiles
 from rigctl.gui.pages.sequence.forecast import Forecast, loop_orders
 from rigctl.gui.pages.sequence.forecaster import Forecaster
 from rigctl.gui.pages.sequence.forms import ProgramForm
-from rigctl.gui.pages.sequence.preview import CoursePlots
 from rigctl.gui.pages.sequence.program_file import OpenedProgram, rigs_in, save_copy, shipped_programs
-from rigctl.gui.pages.sequence.program_list import ProgramList
 from rigctl.gui.pages.sequence.readiness import start_words, why_not
-from rigctl.gui.pages.sequence.start_panel import StartChoice, StartPanel
-from rigctl.gui.pages.sequence.summary import FaultList, Figures, RigChoice
+from rigctl.gui.pages.sequence.start_panel import StartChoice
 from rigctl.gui.pages.sequence.toolbar import ProgramBar
+from rigctl.gui.pages.sequence.workbench import Workbench
 from rigctl.gui.services import Services
 from rigctl.gui.widgets.notice import Notice
 
@@ -59,13 +52,10 @@ class SequencePage(Page):
         self._loaded = False
         self.notice = Notice(theme)
         self.bar = ProgramBar(theme)
-        self.program_list = ProgramList(theme)
-        self.editor = SequenceEditor(theme)
-        self.rig_choice = RigChoice(theme)
-        self.figures = Figures(theme)
-        self.preview = CoursePlots(theme)
-        self.fault_list = FaultList(theme)
-        self.start = StartPanel(theme)
+        self.bench = Workbench(theme)
+        self.program_list, self.editor, right = self.bench.program_list, self.bench.editor, self.bench.right
+        self.rig_choice, self.figures, self.preview = right.rig_choice, right.figures, right.preview
+        self.fault_list, self.start = right.fault_list, right.start
         self.empty = EmptyState(theme)
         self.forecaster = Forecaster(services.work, self)
         self.files = ProgramFiles(services, self.draft, self.notice, self)
@@ -75,46 +65,9 @@ class SequencePage(Page):
         self._show()
 
     def _build(self) -> None:
-        theme = self.services.theme
-        self.no_sequence = QLabel(self.tr("The program has no sequence.\nAdd one on the left."))
-        self.no_sequence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.no_sequence.setProperty("look", "muted")
-        self.middle = QStackedWidget()
-        self.middle.addWidget(self.editor)
-        self.middle.addWidget(self.no_sequence)
-        self.right = QWidget()
-        column = QVBoxLayout(self.right)
-        column.setContentsMargins(*(theme.px(1),) * 4)
-        column.setSpacing(theme.px(1))
-        inner = QWidget()
-        upper = QVBoxLayout(inner)
-        upper.setContentsMargins(0, 0, 0, 0)
-        upper.setSpacing(theme.px(1))
-        upper.addWidget(self.rig_choice)
-        upper.addWidget(self.figures)
-        upper.addWidget(self.preview, 1)
-        upper.addWidget(self.fault_list)
-        area = QScrollArea()
-        area.setWidgetResizable(True)
-        area.setFrameShape(QScrollArea.Shape.NoFrame)
-        area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        area.setMinimumWidth(theme.px(26))
-        area.setWidget(inner)
-        column.addWidget(area, 1)
-        column.addWidget(self.start)
-        self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        self.splitter.setChildrenCollapsible(False)
-        self.splitter.setHandleWidth(1)
-        for number, (widget, stretch) in enumerate(
-            ((self.program_list, 2), (self.middle, 6), (self.right, 4))
-        ):
-            self.splitter.addWidget(widget)
-            self.splitter.setStretchFactor(number, stretch)
-        self.splitter.setSizes([theme.px(26), theme.px(74), theme.px(42)])
         self.body = QStackedWidget()
         self.body.addWidget(self.empty)
-        self.body.addWidget(self.splitter)
+        self.body.addWidget(self.bench)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
@@ -197,13 +150,13 @@ class SequencePage(Page):
 
     def save_layout(self, settings: QSettings) -> None:
         """See Page."""
-        settings.setValue("splitter", self.splitter.saveState())
+        settings.setValue("splitter", self.bench.saveState())
 
     def restore_layout(self, settings: QSettings) -> None:
         """See Page."""
         state = settings.value("splitter")
         if state is not None:
-            self.splitter.restoreState(state)
+            self.bench.restoreState(state)
 
     def help_text(self) -> str:
         """See Page."""
@@ -415,7 +368,7 @@ class SequencePage(Page):
         faults = self.all_faults()
         self.program_list.show_draft(self.draft, faults, self.selected)
         form = self.draft.sequence(self.selected)
-        self.middle.setCurrentIndex(0 if form is not None else 1)
+        self.bench.show_editor(form is not None)
         if form is not None:
             self.editor.setValue(form)
             self.editor.show_faults([fault for fault in faults if fault.uid == form.uid])

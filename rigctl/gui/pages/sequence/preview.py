@@ -58,7 +58,7 @@ class CoursePlots(QWidget):
         self.view: Any = pg.GraphicsLayoutWidget()
         self.view.setObjectName("preview-plots")
         self.view.setAccessibleName(self.tr("Drawn course of the first brakings"))
-        self.view.setMinimumSize(theme.px(24), theme.px(24))
+        self.view.setMinimumSize(theme.px(16), theme.px(20))
         self.view.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
         self.view.ci.layout.setSpacing(0)
         self.view.ci.layout.setContentsMargins(0, 0, theme.px(0.5), 0)
@@ -165,7 +165,7 @@ class CoursePlots(QWidget):
         for key, curve in self.curves.items():
             curve.setData(minutes, data[key])
         self.braking.setData(*self._brakings(course))
-        self.title.setText(self.tr("Course, from braking {0}").format(course.first_index))
+        self.title.setText(self.tr("From braking {0}").format(course.first_index))
         if not self._manual:
             self._show_range()
 

@@ -100,7 +100,7 @@ class ProgramList(QWidget):
         ):
             menu.addAction(text, lambda kind=kind: self.addAsked.emit(kind))
         self.add.setMenu(menu)
-        self.duplicate = QPushButton(self.tr("Duplicate"))
+        self.duplicate = QPushButton(self.tr("Copy"))
         self.remove = QPushButton(self.tr("Remove"))
         self.up, self.down = QPushButton(self.tr("▲ Up")), QPushButton(self.tr("▼ Down"))
         self._grid = QGridLayout()
@@ -119,7 +119,7 @@ class ProgramList(QWidget):
         title = QLabel(self.tr("Program"))
         title.setProperty("look", "title")
         title.setBuddy(self.name)
-        order = QLabel(self.tr("Sequences, top to bottom"))
+        order = QLabel(self.tr("Sequences"))
         order.setProperty("look", "muted")
         self._column = QVBoxLayout(self)
         for widget, stretch in (

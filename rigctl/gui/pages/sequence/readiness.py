@@ -15,7 +15,7 @@ from rigctl.gui.pages.sequence.forecast import Forecast
 from rigctl.gui.pages.sequence.words import brakings_text, long_time_text, place_name
 from rigctl.gui.rig.state import RigState, Word
 
-_BUSY = (Word.STARTING, Word.RUNNING, Word.PAUSED, Word.STOPPING)
+_BUSY = (Word.RUNNING, Word.PAUSED, Word.STOPPING)
 
 
 def why_not(
@@ -36,6 +36,8 @@ def why_not(
         why = QCoreApplication.translate("sequence", "Cannot be started: no rig file is found.")
     elif forecast is None or forecast.program is not draft.program or forecast.rig is not rig:
         why = QCoreApplication.translate("sequence", "Checking every set-point against the rig …")
+    elif state.word is Word.STARTING:
+        why = QCoreApplication.translate("sequence", "A session is being started.")
     elif state.mode == "program" and state.word in _BUSY:
         why = QCoreApplication.translate("sequence", "A program is running; see the run page.")
     return why

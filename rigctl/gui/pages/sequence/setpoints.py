@@ -5,8 +5,8 @@ Not its job: what the lists mean together (`sequences.matrix`), the duration of 
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from rigctl.config.rig import RigConfig
 from rigctl.gui.pages.sequence.forms import SequenceForm, SpeedRow, profile_rows
@@ -36,12 +36,17 @@ class ListColumn(QWidget):
         self._theme = theme
         self._unit = unit
         self._speeds = speeds
+        symbol = "T" if place == "temperatures_degc" else "p"
         self.place = place
         self.name = QLabel(name)
         self.name.setProperty("look", "title")
         self.limits = QLabel()
         self.limits.setProperty("look", "muted")
-        heads = (self.tr("t, s"), self.tr("n1, 1/min"), self.tr("n2, 1/min")) if speeds else (unit,)
+        heads = (
+            (self.tr("t\ns"), self.tr("n1\n1/min"), self.tr("n2\n1/min"))
+            if speeds
+            else (f"{symbol}\n{unit}",)
+        )
         self.table = ValuesTable(theme, heads, parse_block if speeds else _list_block, grouped=speeds)
         self.table.setObjectName(f"field-{place}")
         self.table.setAccessibleName(name)
@@ -100,6 +105,15 @@ class ListColumn(QWidget):
         self.filler.setVisible(on)
         if on:
             self.filler.start.setFocus()
+            QTimer.singleShot(0, self, self._show_filler)
+
+    def _show_filler(self) -> None:
+        """Scroll to it, when the section is higher than its place."""
+        parent = self.parentWidget()
+        while parent is not None and not isinstance(parent, QScrollArea):
+            parent = parent.parentWidget()
+        if parent is not None and self.filler.isVisible():
+            parent.ensureWidgetVisible(self.filler)
 
     def _on_filled(self, values: list[float], duration: str) -> None:
         texts = [write_number(value) for value in values]

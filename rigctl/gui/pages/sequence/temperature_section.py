@@ -18,6 +18,10 @@ from rigctl.gui.widgets.field_grid import FieldGrid
 _DRAG = ("conditioning.drag_speed_rpm", "conditioning.drag_pressure_bar")
 
 
+WIDE_UNITS = 60
+"""Width in grid units from which the two halves stand side by side."""
+
+
 class TemperatureSection(Section):
     """Conditioning on the left, the rest on the right."""
 
@@ -26,16 +30,29 @@ class TemperatureSection(Section):
         self.left, self.right = FieldGrid(theme, 9), FieldGrid(theme, 9)
         self._build_conditioning()
         self._build_rest()
+        self._narrow: bool | None = None
         self._titles = (QLabel(self.tr("Before each braking")), QLabel(self.tr("Limits and pauses")))
         self._grid = QGridLayout(self)
-        for column, (title, fields) in enumerate(zip(self._titles, (self.left, self.right), strict=True)):
+        for title in self._titles:
             title.setProperty("look", "title")
-            self._grid.addWidget(title, 0, column)
-            self._grid.addWidget(fields, 1, column)
-            self._grid.setColumnStretch(column, 1)
-        self._grid.setRowStretch(2, 1)
+        self.show_width(theme.px(WIDE_UNITS))
         theme.changed.connect(self._restyle)
         self._restyle()
+
+    def show_width(self, width: int) -> None:
+        """Side by side, or below each other in a narrow place."""
+        narrow = width < self.theme.px(WIDE_UNITS)
+        if narrow == self._narrow:
+            return
+        self._narrow = narrow
+        for number, (title, fields) in enumerate(zip(self._titles, (self.left, self.right), strict=True)):
+            row, column = (2 * number, 0) if narrow else (0, number)
+            for widget, at in ((title, row), (fields, row + 1)):
+                self._grid.removeWidget(widget)
+                self._grid.addWidget(widget, at, column)
+        self._grid.setColumnStretch(0, 1)
+        self._grid.setColumnStretch(1, 0 if narrow else 1)
+        self._grid.setRowStretch(4, 1)
 
     def _restyle(self) -> None:
         self._grid.setHorizontalSpacing(self.theme.px(3))

@@ -8,7 +8,7 @@ _NAMES = {
     "bedding": QT_TRANSLATE_NOOP("sequence", "bedding"),
     "matrix": QT_TRANSLATE_NOOP("sequence", "matrix"),
     "friction": QT_TRANSLATE_NOOP("sequence", "friction"),
-    "stop": QT_TRANSLATE_NOOP("sequence", "stop brakings"),
+    "stop": QT_TRANSLATE_NOOP("sequence", "stop"),
     "calibration": QT_TRANSLATE_NOOP("sequence", "calibration"),
     "check": QT_TRANSLATE_NOOP("sequence", "check"),
     "constant": QT_TRANSLATE_NOOP("sequence", "constant"),
