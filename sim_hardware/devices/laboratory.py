@@ -1,7 +1,7 @@
 """The fault laboratory of a running simulated rig, seen by a person or a test: ask for stimuli.
 
-Job: the socket's name, one request and its answer, which running rigs have a laboratory. Standard library and
-words only. Not its job: what a stimulus does (`stimuli`, in the rig server).
+Job: the socket's name, one request and its answer, the answer in words. Standard library and words only. Not
+its job: what a stimulus does (`stimuli`, in the rig server).
 
 A request says what to do: ``{"do": "estop", "pressed": true}``, ``{"do": "doors", "open": true}``,
 ``{"do": "sensor", "channel": "pressure", "mode": "frozen"}`` (modes ok, invalid, frozen, offset with "value";
@@ -93,3 +93,29 @@ class Laboratory:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def in_force(answer: dict[str, Any]) -> list[str]:
+    """What an answer says is in force, a line each."""
+    lines = []
+    if answer["estop_pressed"]:
+        lines.append("The emergency stop is pressed.")
+    if answer["doors_open"]:
+        lines.append("A door is open.")
+    for channel, fault in answer["sensors"].items():
+        value = f" by {fault['value']:g}" if fault["mode"] == "offset" else ""
+        who = "" if fault["seen_by"] == "both" else f" (seen by the {fault['seen_by']} only)"
+        lines.append(f"Sensor {channel}: {fault['mode']}{value}{who}.")
+    if answer["vent_valve_stuck"]:
+        lines.append("The vent valve is stuck.")
+    if answer["weight_nm"]:
+        lines.append(f"A lever puts {answer['weight_nm']:g} N·m on the torque sensor.")
+    if answer["calibrator_db"]:
+        lines.append(f"A calibrator gives {answer['calibrator_db']:g} dB at the microphone.")
+    if answer["drift_db"]:
+        lines.append(f"The microphone has drifted by {answer['drift_db']:+g} dB.")
+    for request in answer["waiting"]:
+        fields = ((key, value) for key, value in request.items() if key not in ("do", "at_s"))
+        words = ", ".join(f"{key}={value}" for key, value in fields)
+        lines.append(f"At {request['at_s']:g} s of rig time: {request['do']} {words}".rstrip())
+    return lines

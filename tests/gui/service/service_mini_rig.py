@@ -3,9 +3,12 @@
 Not its job: judging.
 """
 
+import fcntl
+import os
 import select
 import threading
 import time
+import weakref
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -73,9 +76,13 @@ def session_of(tmp_path: Path, calibrations: tuple = (), simulated: bool = True)
     Journal(campaign / "journal.jsonl", "supervisor").close()
     config = load_model(CONFIGS / "rigs" / "simulated.toml", RigConfig)
     limits = config.safety.model_copy(update={"limits": CONFIGS / "limits" / "a_class.toml"})
+    fd = os.open(run_dir, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    fcntl.flock(fd, fcntl.LOCK_EX)  # as a supervisor holds its folder while it lives
+    weakref.finalize(config, os.close, fd)
     return SimpleNamespace(
         run_dir=run_dir, campaign=campaign, pid=1, simulated=simulated,
         rig=config.model_copy(update={"safety": limits}), file=SimpleNamespace(calibrations=calibrations),
+        keeps=config,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication
 from service_mini_rig import MiniRig, session_of
 
 from rigctl.core.journal import Journal, Record
@@ -41,6 +42,12 @@ def attach(services, session) -> None:
     services.rig.attached.emit(session)
 
 
+def show_tab(page: ServicePage, name: str) -> None:
+    """Show a tab and let it be laid out."""
+    page.show_tab(name)
+    QApplication.processEvents()
+
+
 def record(source: str, kind: str, rig_s: float | None = None, **payload) -> Record:
     return Record("2026-11-30T09:00:00.000+00:00", 0, rig_s, source, 7, 0, kind, payload, "", "ab")
 
@@ -49,12 +56,11 @@ def record(source: str, kind: str, rig_s: float | None = None, **payload) -> Rec
 
 
 def test_laboratory_is_there_on_simulated_rigs_only(page, services, session, tmp_path):
-    index = page.tabs.indexOf(page.laboratory)
+    index = page.tab_index("laboratory")
     assert not page.tabs.isTabVisible(index)
     attach(services, session)
     assert page.tabs.isTabVisible(index)
-    services.rig.session = None
-    services.rig.detached.emit("it has ended")
+    services.rig.detached.emit("it has ended")  # the connection still remembers it
     assert not page.tabs.isTabVisible(index)
     (tmp_path / "real").mkdir()
     attach(services, session_of(tmp_path / "real", simulated=False))
@@ -76,10 +82,10 @@ def test_other_pages_open_a_tab(page, services, tmp_path):
 
 
 def test_only_the_shown_tab_works(page, qtbot):
-    page.show_tab("journal")
+    show_tab(page, "journal")
     assert page.journal._tail.isActive()
     assert not page.devices._refresh.isActive()
-    page.show_tab("devices")
+    show_tab(page, "devices")
     assert page.devices._refresh.isActive()
     page.deactivated()
     assert not page.devices._refresh.isActive() and not page.journal._tail.isActive()
@@ -91,7 +97,7 @@ def test_tab_counts_the_alarms_nobody_has_seen(page, services, session, qtbot):
     broken = record("controller", "braking_broken_off", index=2, reason="disc too hot")
     services.rig.recordsAdded.emit([trip, broken])
     assert "(2)" in page.tabs.tabText(2)
-    page.show_tab("alarms")
+    show_tab(page, "alarms")
     page.alarms.table.selectRow(0)
     qtbot.mouseClick(page.alarms.acknowledge, Qt.MouseButton.LeftButton)
     assert "(1)" in page.tabs.tabText(2)
@@ -236,7 +242,7 @@ def test_journal_tab_searches_and_follows(page, services, session, qtbot):
     journal.write("state", rig_s=12.5, state="running")
     journal.write("verb", rig_s=13.0, verb="hold")
     attach(services, session)
-    page.show_tab("journal")
+    show_tab(page, "journal")
     tab = page.journal
     qtbot.waitUntil(lambda: tab.model.rowCount() == 2)
     assert "(running)" in tab.campaign.currentText()
@@ -285,7 +291,7 @@ def test_journal_of_ten_thousand_records_is_filtered_at_once(page, qtbot):
 
 
 def test_no_campaign_teaches(page, qtbot):
-    page.show_tab("journal")
+    show_tab(page, "journal")
     qtbot.waitUntil(lambda: "writes a journal" in page.journal.status.text())
 
 
@@ -301,7 +307,7 @@ def mini(session) -> Iterator[MiniRig]:
 
 def test_laboratory_does_what_it_says(page, services, session, mini, qtbot):
     attach(services, session)
-    page.show_tab("laboratory")
+    show_tab(page, "laboratory")
     tab = page.laboratory
     qtbot.waitUntil(tab.estop.isEnabled)
     assert tab.force.text() == "Nothing is disturbed."
@@ -325,7 +331,7 @@ def test_laboratory_does_what_it_says(page, services, session, mini, qtbot):
 
 def test_what_others_do_is_shown_and_a_refusal_too(page, services, session, mini, qtbot):
     attach(services, session)
-    page.show_tab("laboratory")
+    show_tab(page, "laboratory")
     tab = page.laboratory
     qtbot.waitUntil(tab.estop.isEnabled)
     mini.stimuli.handle({"do": "calibrator", "level_db": 114})
@@ -341,7 +347,7 @@ def test_what_others_do_is_shown_and_a_refusal_too(page, services, session, mini
 
 
 def test_window_settings_are_remembered_and_take_effect(page, services, theme, qtbot, tmp_path):
-    page.show_tab("window")
+    show_tab(page, "window")
     tab = page.window_settings
     try:
         qtbot.mouseClick(tab.looks["dark"], Qt.MouseButton.LeftButton)
@@ -363,7 +369,7 @@ def test_window_settings_are_remembered_and_take_effect(page, services, theme, q
 
 def test_data_folder_must_be_one(page, services, tmp_path, qtbot):
     tab = page.window_settings
-    page.show_tab("window")
+    show_tab(page, "window")
     file = tmp_path / "file"
     file.touch()
     for text, words in (
@@ -381,7 +387,7 @@ def test_data_folder_must_be_one(page, services, tmp_path, qtbot):
 
 
 def test_layout_is_remembered(page, services, qtbot):
-    page.show_tab("alarms")
+    show_tab(page, "alarms")
     page.save_layout(services.settings)
     again = ServicePage(services)
     qtbot.addWidget(again)

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QStackedWidget, QVBoxLay
 from rigctl.calibration.record import Calibration, Due, Quantity
 from rigctl.calibration.store import DueLine, Kept, due_lines, history, newest, rig_folder
 from rigctl.gui.format import number_text
+from rigctl.gui.pages.service.live_session import LiveSession
 from rigctl.gui.pages.service.parts import Panel, PlainTable, label, set_look
 from rigctl.gui.pages.service.procedure import Procedure
 from rigctl.gui.services import Services
@@ -106,9 +107,10 @@ def session_folder(session: Any) -> Path:
 class CalibrationsTab(QWidget):
     """Overview and procedures."""
 
-    def __init__(self, services: Services) -> None:
+    def __init__(self, services: Services, live: LiveSession) -> None:
         super().__init__()
         self.services = services
+        self._live = live
         self.theme = services.theme
         self._kept: list[Kept] = []
         self._folder: Path | None = None
@@ -121,8 +123,8 @@ class CalibrationsTab(QWidget):
         layout.setSpacing(0)
         layout.addWidget(self.notice)
         layout.addWidget(self._stack, 1)
-        services.rig.attached.connect(self._on_attached)
-        services.rig.detached.connect(self._on_detached)
+        live.began.connect(self._on_began)
+        live.ended.connect(self._on_ended)
 
     def _overview(self) -> QWidget:
         tips = {
@@ -180,7 +182,7 @@ class CalibrationsTab(QWidget):
 
     def refresh(self) -> None:
         """Read the folder of the rig that is watched."""
-        session = self.services.rig.session
+        session = self._live.session
         for card in self.cards.values():
             card.start.setEnabled(session is not None)
         if session is None:
@@ -229,7 +231,7 @@ class CalibrationsTab(QWidget):
 
     def begin(self, quantity: Quantity, _checked: bool = False) -> None:
         """Start a procedure on the session that is watched."""
-        session, folder = self.services.rig.session, self._folder
+        session, folder = self._live.session, self._folder
         if session is None or folder is None or self.procedure is not None:
             return
         if quantity is Quantity.TORQUE:
@@ -280,11 +282,11 @@ class CalibrationsTab(QWidget):
             return [self.tr("Readings of a calibration that is not saved")]
         return []
 
-    def _on_attached(self, _session: Any) -> None:
+    def _on_began(self, _session: Any) -> None:
         if self.procedure is None:
             self.refresh()
 
-    def _on_detached(self, _why: str) -> None:
+    def _on_ended(self) -> None:
         if self.procedure is not None:
             self.procedure.say(self.tr("The session has ended: no more readings can be taken."), "error")
         else:

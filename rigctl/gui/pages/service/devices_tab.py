@@ -29,6 +29,7 @@ from rigctl.gui.pages.service.devices_list import (
     rows_of_test,
     values_of_state,
 )
+from rigctl.gui.pages.service.live_session import LiveSession
 from rigctl.gui.pages.service.parts import Panel, label, scrolled, set_look
 from rigctl.gui.rig.state import RigState
 from rigctl.gui.services import Services
@@ -117,9 +118,10 @@ def _escaped(text: str) -> str:
 class DevicesTab(QWidget):
     """Cards and [Test devices]."""
 
-    def __init__(self, services: Services) -> None:
+    def __init__(self, services: Services, live: LiveSession) -> None:
         super().__init__()
         self._services = services
+        self._live = live
         self._theme = services.theme
         self._process: QProcess | None = None
         self._state_at = 0.0
@@ -165,8 +167,8 @@ class DevicesTab(QWidget):
         self._refresh.setInterval(_REFRESH_MS)
         self._refresh.timeout.connect(self._show_values)
         rig = services.rig
-        rig.attached.connect(self._on_session)
-        rig.detached.connect(self._on_session)
+        live.began.connect(self._on_began)
+        live.ended.connect(self._from_session)
         rig.stateChanged.connect(self._on_state)
         rig.recordsAdded.connect(self._on_records)
         self._theme.changed.connect(self._restyle)
@@ -200,13 +202,13 @@ class DevicesTab(QWidget):
     def _restyle(self) -> None:
         self._show_rows(self._rows)
 
-    def _on_session(self, _session_or_why: Any) -> None:
+    def _on_began(self, _session: Any) -> None:
         self._from_session()
 
     # -- from the session ------------------------------------------------------------------------
 
     def _from_session(self) -> None:
-        session = self._services.rig.session
+        session = self._live.session
         self.rig.setEnabled(session is None)
         self.test.setEnabled(session is None)
         if session is None:
@@ -236,7 +238,7 @@ class DevicesTab(QWidget):
         self._state, self._state_at = state, time.monotonic()
 
     def _show_values(self) -> None:
-        if self._services.rig.session is None or not self._state_at:
+        if self._live.session is None or not self._state_at:
             return
         for role, values in values_of_state(self._state, time.monotonic() - self._state_at).items():
             self.cards[role].show_values(values)

@@ -27,6 +27,7 @@ from PySide6.QtWidgets import (
 from rigctl.core.journal import verify_journal
 from rigctl.gui.format import clock_text, number_text
 from rigctl.gui.pages.service.journal_list import Filter, JournalFile, Row, campaigns_of, details_of
+from rigctl.gui.pages.service.live_session import LiveSession
 from rigctl.gui.pages.service.parts import LEFT, RIGHT, label, pad_cells, set_look
 from rigctl.gui.services import Services
 from rigctl.gui.work import Reporter
@@ -121,9 +122,10 @@ class JournalTable(QAbstractTableModel):
 class JournalTab(QWidget):
     """Any campaign's journal."""
 
-    def __init__(self, services: Services) -> None:
+    def __init__(self, services: Services, live: LiveSession) -> None:
         super().__init__()
         self._services = services
+        self._live = live
         self._file: JournalFile | None = None
         self._job: Any = None
         self._wanted: Path | None = None
@@ -160,7 +162,7 @@ class JournalTab(QWidget):
         theme.changed.connect(self._restyle)
         self._restyle()
         self._fill_filters()
-        services.rig.attached.connect(self._on_attached)
+        live.began.connect(self._on_began)
 
     def _make_controls(self) -> None:
         self.campaign = QComboBox()
@@ -244,7 +246,7 @@ class JournalTab(QWidget):
         self._wanted = folder
         self._choose(folder)
 
-    def _on_attached(self, session: Any) -> None:
+    def _on_began(self, session: Any) -> None:
         if self._wanted is None or self._file is None:
             self._wanted = session.campaign
             if self._tail.isActive():
@@ -252,7 +254,7 @@ class JournalTab(QWidget):
 
     def _show_campaigns(self, folders: list[Path]) -> None:
         chosen = self._wanted or (self._file.path.parent if self._file is not None else None)
-        running = self._services.rig.session
+        running = self._live.session
         if chosen is None and running is not None:
             chosen = running.campaign
         for extra in (chosen, running.campaign if running is not None else None):

@@ -23,11 +23,13 @@ from PySide6.QtWidgets import (
 from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED, TORQUE
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.service.laboratory_client import LaboratoryClient
+from rigctl.gui.pages.service.live_session import LiveSession
 from rigctl.gui.pages.service.parts import Form, Panel, label, scrolled, set_look
 from rigctl.gui.services import Services
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.entries import NumberRange
 from rigctl.gui.widgets.value_field import ValueField
+from sim_hardware.devices.laboratory import in_force
 
 _LOOK_MS = 1000
 _UNITS = {PRESSURE: "bar", SPEED: "1/min", TORQUE: "N·m", DISC_TEMPERATURE: "K"}
@@ -96,7 +98,7 @@ class SensorRow(QWidget):
 class LaboratoryTab(QWidget):
     """All stimuli."""
 
-    def __init__(self, services: Services) -> None:
+    def __init__(self, services: Services, live: LiveSession) -> None:
         super().__init__()
         self._services = services
         self._theme = services.theme
@@ -136,10 +138,10 @@ class LaboratoryTab(QWidget):
         self._look = QTimer(self)
         self._look.setInterval(_LOOK_MS)
         self._look.timeout.connect(self._on_look)
-        services.rig.attached.connect(self._on_attached)
-        services.rig.detached.connect(self._on_detached)
-        if services.rig.session is not None:
-            self._on_attached(services.rig.session)
+        live.began.connect(self._on_began)
+        live.ended.connect(self._on_ended)
+        if live.session is not None:
+            self._on_began(live.session)
         self._show({})
 
     # -- build -----------------------------------------------------------------------------------
@@ -254,15 +256,15 @@ class LaboratoryTab(QWidget):
         if self.client is not None:
             self.client.close()
 
-    def _on_attached(self, session: Any) -> None:
-        self._on_detached("")
+    def _on_began(self, session: Any) -> None:
+        self._on_ended()
         if session.simulated:
             self.client = LaboratoryClient(session.run_dir, self._services.work, self)
             self.client.answered.connect(self._show)
             self.client.refused.connect(self._on_refused)
         self._show({})
 
-    def _on_detached(self, _why: str) -> None:
+    def _on_ended(self) -> None:
         if self.client is not None:
             self.client.close()
             self.client.deleteLater()
@@ -296,8 +298,6 @@ class LaboratoryTab(QWidget):
         self._show(self._last)
 
     def _show(self, answer: dict[str, Any]) -> None:
-        from rigctl.app.laboratory import in_force
-
         before, self._last = self._last, answer
         for widget in (self.estop, self.doors, self.vent, self.clear, self.calibrator, self.disc, self.weight,
                        self.drift, *self.sensors.values()):  # fmt: skip
