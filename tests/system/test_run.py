@@ -66,8 +66,9 @@ def test_same_seed_same_data_other_seed_other_data(cli):
     program = cli.program(pressures=[20], temperatures=[40], duration_s=1.0)
     for name, seed in (("a", 5), ("b", 5), ("c", 6)):
         code, text = cli.run(
-            "run", program, "--rig", cli.rig, "--out", cli.folder, "--name", name, "--seed", seed
-        )
+            "run", program, "--rig", cli.rig, "--out", cli.folder, "--name", name, "--seed", seed,
+            "--no-report",
+        )  # fmt: skip
         assert code == 0, text + cli.logs(name)
     a, b, c = (datasets(brakings(cli.folder / name)[0]) for name in "abc")
     assert a.keys() == b.keys() == c.keys()
@@ -99,7 +100,9 @@ def test_stiffness_of_the_plant_moves_the_squeal_as_the_eigenvalue_says(cli):
 
 def test_resume_of_a_complete_campaign_says_so(cli):
     program = cli.program(pressures=[10], temperatures=[40], duration_s=0.5)
-    code, text = cli.run("run", program, "--rig", cli.rig, "--out", cli.folder, "--name", "a", "--seed", 1)
+    code, text = cli.run(
+        "run", program, "--rig", cli.rig, "--out", cli.folder, "--name", "a", "--seed", 1, "--no-report"
+    )
     assert code == 0, text
     code, text = cli.run("resume", cli.folder / "a")
     assert code == 0
