@@ -396,7 +396,8 @@ def test_ten_thousand_rows_stay_fast(page, rig, qtbot):
     attach(page, rig, qtbot, page.services.data_folder, rows)
     assert page.table_model.rowCount() == 10125
     tell(rig, *[item for i in range(1, 4001) for item in (started(i), committed(i))])
-    assert page.model.count(RowState.COMPLETE) == 4000
+    assert page.model.count(RowState.COMPLETE) < 4000  # the window is not held up by a long journal
+    qtbot.waitUntil(lambda: page.model.count(RowState.COMPLETE) == 4000)
     page.reader.begin(None)
 
 

@@ -46,7 +46,7 @@ from rigctl.gui.widgets.live_slot import LiveSlot
 from rigctl.gui.widgets.rating_row import RATINGS
 
 CHUNK = 1000
-"""Rows of a program made per turn of the event loop: about 15 ms."""
+"""Rows of a program made, or records folded, per turn of the event loop: 15 to 30 ms."""
 MAP_EVERY_MS = 500
 
 
@@ -60,7 +60,7 @@ class RunPage(Page):
         self.pace = Pace()
         self.campaign: Path | None = None
         self._plan: Iterator[Row] | None = None
-        self._early: list[Any] = []  # records that came before the rows were made
+        self._records: list[Any] = []  # still to be folded
         self._live = False  # a session is watched and its controller is there
         self._wanted = False  # the start panel although there is a run to look at
         self.reader = SummaryReader(services.work, self)
@@ -74,7 +74,7 @@ class RunPage(Page):
         self.start = StartPanel(theme)
         self._planner = QTimer(self)
         self._planner.setInterval(0)
-        self._planner.timeout.connect(self._make_rows)
+        self._planner.timeout.connect(self._go_on)
         self._map_timer = QTimer(self)
         self._map_timer.setInterval(MAP_EVERY_MS)
         self._map_timer.timeout.connect(self.map.refresh)
@@ -234,7 +234,7 @@ class RunPage(Page):
         self.campaign = Path(session.campaign)
         self.model = RunModel()
         self.pace.clear()
-        self._early = []
+        self._records = []
         self._wanted = False
         self.start.setNews("")
         self.table_model.reset(self.model)
@@ -247,23 +247,28 @@ class RunPage(Page):
             self.services.notify(str(error))
             program = None
         self._plan = None if program is None else rows_of(program)
-        self._make_rows()
+        self._go_on()
 
-    def _make_rows(self) -> None:
-        """Some rows of the program; the records wait until all are there."""
+    def _go_on(self) -> None:
+        """Some rows of the program; then, when all are there, some records of its journal."""
         if self._plan is not None:
-            before = len(self.model.rows)
-            rows = list(itertools.islice(self._plan, CHUNK))
-            self.model.add(rows)
-            self.table_model.grown(before)
-            self.table.fit(rows)
-            if len(rows) == CHUNK:
-                self._planner.start()
-                return
-        self._plan = None
-        self._planner.stop()
-        early, self._early = self._early, []
-        self._on_records(early)
+            self._make_rows(self._plan)
+        else:
+            some, self._records = self._records[:CHUNK], self._records[CHUNK:]
+            self._fold(some)
+        if self._plan is not None or self._records:
+            self._planner.start()
+        else:
+            self._planner.stop()
+
+    def _make_rows(self, plan: Iterator[Row]) -> None:
+        before = len(self.model.rows)
+        rows = list(itertools.islice(plan, CHUNK))
+        self.model.add(rows)
+        self.table_model.grown(before)
+        self.table.fit(rows)
+        if len(rows) < CHUNK:
+            self._plan = None
 
     def _on_detached(self, why: str) -> None:
         self._live = False
@@ -281,9 +286,14 @@ class RunPage(Page):
     # -- news -------------------------------------------------------------------------------------
 
     def _on_records(self, records: list[Any]) -> None:
-        if self._plan is not None:
-            self._early += records
-            return
+        waiting = self._plan is not None or bool(self._records)
+        self._records += records
+        if not waiting:
+            self._go_on()
+        elif not self._planner.isActive():
+            self._planner.start()
+
+    def _fold(self, records: list[Any]) -> None:
         before = len(self.model.rows)
         ended = self.model.end
         changed = self.model.fold(records)
