@@ -155,7 +155,7 @@ def test_records_wait_until_the_rows_of_a_long_program_are_made(page, rig, qtbot
     assert len(page.model.rows) < MATRIX.count
     qtbot.waitUntil(lambda: len(page.model.rows) == MATRIX.count)
     assert [row.index for row in page.model.rows] == list(range(1, MATRIX.count + 1))
-    assert page.model.row(200).state is RowState.CONDITIONING
+    qtbot.waitUntil(lambda: page.model.row(200).state is RowState.CONDITIONING)
 
 
 def test_a_page_made_later_catches_up(services, rig, qtbot, tmp_path):
