@@ -189,6 +189,36 @@ def test_dragging_a_sequence_moves_it(page, qtbot, tmp_path) -> None:
     assert listed.count() == 2
 
 
+def test_a_number_still_being_typed_is_saved_with_the_keys(page, qtbot, tmp_path) -> None:
+    opened(page, qtbot, copied(tmp_path, "quick_check"))
+    page.files.save_as(tmp_path / "mine.toml")
+    qtbot.waitUntil(lambda: page.files.path == tmp_path / "mine.toml")
+    page.activateWindow()
+    table = page.editor.setpoints.lists.pressures.table
+    table.setFocus()
+    qtbot.waitUntil(table.hasFocus)
+    table.setCurrentIndex(table.model().index(3, 0))
+    qtbot.keyClicks(table, "9")
+    editor = QApplication.focusWidget()
+    assert editor is not table
+    qtbot.keyClick(editor, Qt.Key.Key_S, CONTROL)
+    qtbot.waitUntil(lambda: read_program(tmp_path / "mine.toml").sequences[0].pressures_bar[-1] == 9.0)
+
+
+def test_a_failed_check_hinders_the_start_and_the_next_change_tries_again(page, qtbot, tmp_path) -> None:
+    opened(page, qtbot, copied(tmp_path, "quick_check"))
+    settled(page, qtbot)
+    repeat = page.editor.head.repeat
+    qtbot.keyClicks(repeat, "0")
+    page.forecaster.ask(None, None)
+    page.forecaster.failed.emit("the worker died")
+    assert "the worker died" in page.start.why.text()
+    assert not page.start.button.isEnabled()
+    qtbot.keyClick(repeat, Qt.Key.Key_Backspace)
+    settled(page, qtbot)
+    assert page.start.button.isEnabled()
+
+
 def test_saving_over_comments_asks_first(page, qtbot, tmp_path) -> None:
     path = copied(tmp_path, "quick_check")
     text = path.read_text()

@@ -18,6 +18,8 @@ from rigctl.gui.work import Work
 from sequences.program import Program
 
 PAUSE_MS = 200
+LANE = "sequence"
+"""Worker of this page: a forecast does not wait behind the model's studies."""
 AT_ONCE = 300
 """Effort up to which a program is forecast in the event loop: about 20 ms."""
 
@@ -75,7 +77,12 @@ class Forecaster(QObject):
             return
         self._running = True
         self._work.in_process(
-            forecast, program, rig, done=partial(self._on_done, program, rig), failed=self._on_failed
+            forecast,
+            program,
+            rig,
+            done=partial(self._on_done, program, rig),
+            failed=self._on_failed,
+            lane=LANE,
         )
 
     def _on_done(self, program: Program, rig: RigConfig, result: Forecast) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
+    QApplication,
     QStackedWidget,
     QVBoxLayout,
 )
@@ -25,9 +26,15 @@ from rigctl.gui.pages.sequence.draft import ProgramDraft, new_sequence
 from rigctl.gui.pages.sequence.empty_state import EmptyState
 from rigctl.gui.pages.sequence.files import ProgramFiles
 from rigctl.gui.pages.sequence.forecast import Forecast, loop_orders
-from rigctl.gui.pages.sequence.forecaster import Forecaster
+from rigctl.gui.pages.sequence.forecaster import LANE, Forecaster
 from rigctl.gui.pages.sequence.forms import ProgramForm
-from rigctl.gui.pages.sequence.program_file import OpenedProgram, rigs_in, save_copy, shipped_programs
+from rigctl.gui.pages.sequence.program_file import (
+    OpenedProgram,
+    ShippedProgram,
+    rigs_in,
+    save_copy,
+    shipped_programs,
+)
 from rigctl.gui.pages.sequence.readiness import start_words, why_not
 from rigctl.gui.pages.sequence.start_panel import StartChoice
 from rigctl.gui.pages.sequence.toolbar import ProgramBar
@@ -49,7 +56,8 @@ class SequencePage(Page):
         self.selected = 0
         self.forecast: Forecast | None = None
         self._rig_faults: tuple[Fault, ...] = ()
-        self._loaded = False
+        self._failure = ""
+        self._shipped: tuple[ShippedProgram, ...] = ()
         self.notice = Notice(theme)
         self.bar = ProgramBar(theme)
         self.bench = Workbench(theme)
@@ -103,12 +111,12 @@ class SequencePage(Page):
         self.fault_list.chosen.connect(self.go_to)
         self.start.started.connect(self._on_start)
         self.forecaster.ready.connect(self._on_forecast)
-        self.forecaster.failed.connect(self.services.notify)
+        self.forecaster.failed.connect(self._on_forecast_failed)
         self.services.rig.stateChanged.connect(lambda _state: self._show_start())
         self.services.theme.changed.connect(self._show)
         for keys, function in (
             (_KEYS.Undo, self.undo), (_KEYS.Redo, self.redo), (QKeySequence("Ctrl+Y"), self.redo),
-            (_KEYS.Save, self.files.save), (QKeySequence("Ctrl+Shift+S"), self.files.ask_save_as),
+            (_KEYS.Save, self._save_typed), (QKeySequence("Ctrl+Shift+S"), self.files.ask_save_as),
             (_KEYS.Open, self.files.ask_open), (QKeySequence("Ctrl+N"), self.bar.newPressed.emit),
         ):  # fmt: skip
             self._shortcut(QKeySequence(keys), function)
@@ -250,6 +258,13 @@ class SequencePage(Page):
         if self.draft.sequence(self.selected) is not None:
             self._did(self.draft.set_sequence(self.editor.value(), place, merge=typed))
 
+    def _save_typed(self) -> None:
+        """Save; a number that is still being typed in a list belongs to it."""
+        focus = QApplication.focusWidget()
+        if focus is not None and self.isAncestorOf(focus):
+            focus.clearFocus()
+        self.files.save()
+
     def undo(self) -> None:
         """One step back."""
         self._after_step(self.draft.undo())
@@ -298,7 +313,7 @@ class SequencePage(Page):
         self.editor.show_rig(self.rig_choice.rig)
         self._show()
 
-    def _on_shipped(self, shipped: Any) -> None:
+    def _on_shipped(self, shipped: tuple[ShippedProgram, ...]) -> None:
         self._shipped = shipped
         self.empty.show_programs(shipped, self.files.recent())
 
@@ -307,6 +322,12 @@ class SequencePage(Page):
             self.forecast = result
             self._rig_faults = rig_faults(result.check, self.draft.form)
             self._show()
+
+    def _on_forecast_failed(self, why: str) -> None:
+        """The next change tries again."""
+        self._failure = why
+        self.figures.show_nothing(why)
+        self._show_start()
 
     def compare_orders(self) -> None:
         """Durations of the other orders of the loops of this sequence."""
@@ -325,7 +346,7 @@ class SequencePage(Page):
                     orders.show_durations(durations, present.loop_order)
 
         self.services.work.in_process(
-            loop_orders, program, form.name.strip(), rig, done=done, failed=orders.show_text
+            loop_orders, program, form.name.strip(), rig, done=done, failed=orders.show_text, lane=LANE
         )
 
     # -- start --------------------------------------------------------------------------------------
@@ -363,7 +384,7 @@ class SequencePage(Page):
         self._show_bar()
         if empty:
             self.forecaster.ask(None, None)
-            self.empty.show_programs(getattr(self, "_shipped", ()), self.files.recent())
+            self.empty.show_programs(self._shipped, self.files.recent())
             return
         faults = self.all_faults()
         self.program_list.show_draft(self.draft, faults, self.selected)
@@ -403,6 +424,7 @@ class SequencePage(Page):
         elif rig is None:
             self.figures.show_nothing(self.tr("No rig file is found."))
         else:
+            self._failure = ""
             self.forecaster.ask(program, rig)
             self.figures.show_waiting(self.tr("estimating …"))
 
@@ -417,6 +439,8 @@ class SequencePage(Page):
             return
         result, faults = self._current_forecast(), self.all_faults()
         reason = why_not(self.draft, faults, result, self.rig_choice.rig, self.services.rig.state)
+        if self._failure and result is None:
+            reason = self.tr("Cannot be started, the check failed: {0}").format(self._failure)
         words = ""
         if result is not None and not reason:
             warnings = sum(fault.severity == "warning" for fault in faults)
