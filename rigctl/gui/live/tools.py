@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from rigctl.gui.format import quantity_text
@@ -78,6 +78,7 @@ class PlotTools(QWidget):
         row = QHBoxLayout()
         row.setSpacing(self._theme.px(0.5))
         for widget in (self.follow, self.freeze, self.cursors, self.span, self.show_button, self.picture):
+            widget.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keyboard to the page
             row.addWidget(widget)
         row.addStretch(1)
         column = QVBoxLayout(self)
