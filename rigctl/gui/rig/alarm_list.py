@@ -2,7 +2,7 @@
 
 Job: alarms from records of the journal and from a `RigState` near the watchdog's limits, each with severity,
 time, words, remedy, number of times, and who has acknowledged it. The same alarm again is counted, not
-repeated. Plain Python, no Qt. Not its job: showing it, writing acknowledgements (`rigctl.gui.rig.alarms`).
+repeated. No widgets. Not its job: showing it, writing acknowledgements (`rigctl.gui.rig.alarms`).
 """
 
 from __future__ import annotations
@@ -12,9 +12,13 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any
 
+from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
+
 from rigctl.core.journal import Record
 from rigctl.gui.rig.near_limits import LimitWatch
 from rigctl.gui.rig.state import RigState
+
+translate = QCoreApplication.translate
 
 WARNING, ALARM = "warning", "alarm"
 LOW_DISK_BYTES = 1e9
@@ -119,8 +123,10 @@ class AlarmList:
             self._hold(f"near:{key}", words, remedy, utc)
         low_disk = state.disk_left_bytes is not None and state.disk_left_bytes < LOW_DISK_BYTES
         if low_disk:
-            words = f"Only {(state.disk_left_bytes or 0.0) / 1e9:.2f} GB of disk are left."
-            self._hold("disk", words, "Free some space before the next braking.", utc)
+            gigabytes = f"{(state.disk_left_bytes or 0.0) / 1e9:.2f}"
+            words = translate("alarms", "Only {0} GB of disk are left.").format(gigabytes)
+            remedy = translate("alarms", "Free some space before the next braking.")
+            self._hold("disk", words, remedy, utc)
         lasting = {f"near:{key}" for key, _, _ in near} | ({"disk"} if low_disk else set())
         for place, alarm in enumerate(self.alarms):
             if alarm.active and alarm.key not in lasting:
@@ -177,13 +183,14 @@ def _trip(p: dict[str, Any]) -> _Found:
 
 
 def _further(p: dict[str, Any]) -> _Found:
-    words = f"Further cause: {_text(p, 'words', 'cause')}"
+    words = translate("alarms", "Further cause: {0}").format(_text(p, "words", "cause"))
     return _Found(f"further:{p.get('cause')}", WARNING, _sentence(words), _text(p, "remedy"))
 
 
 def _refused(what: str) -> Callable[[dict[str, Any]], _Found]:
     def found(p: dict[str, Any]) -> _Found:
-        words = f"{what} was refused: {_text(p, 'words', 'why')}"
+        reason = _text(p, "words", "why")
+        words = translate("alarms", "{0} was refused: {1}").format(translate("alarms", what), reason)
         return _Found(f"refused:{what}:{p.get('why')}", WARNING, _sentence(words), _text(p, "remedy"))
 
     return found
@@ -192,7 +199,9 @@ def _refused(what: str) -> Callable[[dict[str, Any]], _Found]:
 def _plain(severity: str, words: str, remedy: str = "") -> Callable[[dict[str, Any]], _Found]:
     def found(p: dict[str, Any]) -> _Found:
         detail = _text(p, "words", "error", "cause", "reason")
-        return _Found(words, severity, _sentence(f"{words}: {detail}" if detail else words), remedy)
+        said = translate("alarms", words)
+        told = translate("alarms", remedy) if remedy else ""
+        return _Found(words, severity, _sentence(f"{said}: {detail}" if detail else said), told)
 
     return found
 
@@ -201,47 +210,78 @@ def _broken_off(p: dict[str, Any]) -> _Found | None:
     reason = _text(p, "reason")
     if reason.endswith("by the operator") or reason.startswith("safety trip"):
         return None  # a person knows, or the trip itself is the alarm
-    words = f"Braking {p.get('index')} was broken off: {reason}"
-    return _Found("braking_broken_off", WARNING, _sentence(words), "It can be repeated on the Run page.")
+    words = translate("alarms", "Braking {0} was broken off: {1}").format(p.get("index"), reason)
+    remedy = translate("alarms", "It can be repeated on the Run page.")
+    return _Found("braking_broken_off", WARNING, _sentence(words), remedy)
 
 
 def _recording_failed(p: dict[str, Any]) -> _Found:
-    words = f"Braking {p.get('index')} was not recorded: {_text(p, 'error')}"
-    return _Found("recording_failed", ALARM, _sentence(words), "See the disk and logs/recorder.log.")
+    words = translate("alarms", "Braking {0} was not recorded: {1}").format(p.get("index"), _text(p, "error"))
+    remedy = translate("alarms", "See the disk and logs/recorder.log.")
+    return _Found("recording_failed", ALARM, _sentence(words), remedy)
 
 
 def _run_ended(p: dict[str, Any]) -> _Found | None:
     if p.get("outcome") != "failed":
         return None
-    return _Found("run_failed", ALARM, _sentence(f"The run has failed: {_text(p, 'cause')}"), "See the logs.")
+    words = translate("alarms", "The run has failed: {0}").format(_text(p, "cause"))
+    return _Found("run_failed", ALARM, _sentence(words), translate("alarms", "See the logs."))
 
 
 _RECORDS: dict[tuple[str, str], Callable[[dict[str, Any]], _Found | None]] = {
     ("watchdog", "trip"): _trip,
     ("watchdog", "further_cause"): _further,
-    ("watchdog", "refused_arm"): _refused("Arming"),
-    ("watchdog", "refused_disarm"): _refused("Disarming"),
-    ("watchdog", "refused_reset"): _refused("The reset"),
-    ("watchdog", "refused_controller"): _refused("A second controller"),
-    ("watchdog", "refused_message"): _refused("A message to the watchdog"),
-    ("watchdog", "refused_sample"): _refused("A sample of the safety channel"),
+    ("watchdog", "refused_arm"): _refused(str(QT_TRANSLATE_NOOP("alarms", "Arming"))),
+    ("watchdog", "refused_disarm"): _refused(str(QT_TRANSLATE_NOOP("alarms", "Disarming"))),
+    ("watchdog", "refused_reset"): _refused(str(QT_TRANSLATE_NOOP("alarms", "The reset"))),
+    ("watchdog", "refused_controller"): _refused(str(QT_TRANSLATE_NOOP("alarms", "A second controller"))),
+    ("watchdog", "refused_message"): _refused(str(QT_TRANSLATE_NOOP("alarms", "A message to the watchdog"))),
+    ("watchdog", "refused_sample"): _refused(
+        str(QT_TRANSLATE_NOOP("alarms", "A sample of the safety channel"))
+    ),
     ("watchdog", "safe_state_not_confirmed"): _plain(
-        ALARM, "The safe state is not confirmed", "Do not go near the rig; look at pressure and speed there."
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The safe state is not confirmed")),
+        str(QT_TRANSLATE_NOOP("alarms", "Do not go near the rig; look at pressure and speed there.")),
     ),
     ("watchdog", "rig_gone"): _plain(
-        ALARM, "The safety channel has gone", "See logs/rig.log and the cables."
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The safety channel has gone")),
+        str(QT_TRANSLATE_NOOP("alarms", "See logs/rig.log and the cables.")),
     ),
     ("controller", "not_at_rest_after_trip"): _plain(
-        ALARM, "The rig is not at rest after the trip", "Do not go near it; press the emergency stop."
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The rig is not at rest after the trip")),
+        str(QT_TRANSLATE_NOOP("alarms", "Do not go near it; press the emergency stop.")),
     ),
-    ("controller", "rig_lost_after_trip"): _plain(ALARM, "The rig was lost after the trip", "See logs."),
+    ("controller", "rig_lost_after_trip"): _plain(
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The rig was lost after the trip")),
+        str(QT_TRANSLATE_NOOP("alarms", "See logs.")),
+    ),
     ("controller", "run_down_failed"): _plain(
-        ALARM, "The rig could not be run down", "The relay has dropped; look at pressure and speed there."
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The rig could not be run down")),
+        str(QT_TRANSLATE_NOOP("alarms", "The relay has dropped; look at pressure and speed there.")),
     ),
-    ("controller", "recorder_lost"): _plain(ALARM, "The recorder has gone", "See logs/recorder.log."),
-    ("controller", "failed"): _plain(ALARM, "The controller has failed", "See logs/controller.log."),
-    ("controller", "manual_failed"): _plain(WARNING, "A manual command has failed"),
-    ("controller", "unattended"): _plain(WARNING, "Nobody commanded: the rig was run down", "Take command."),
+    ("controller", "recorder_lost"): _plain(
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The recorder has gone")),
+        str(QT_TRANSLATE_NOOP("alarms", "See logs/recorder.log.")),
+    ),
+    ("controller", "failed"): _plain(
+        ALARM,
+        str(QT_TRANSLATE_NOOP("alarms", "The controller has failed")),
+        str(QT_TRANSLATE_NOOP("alarms", "See logs/controller.log.")),
+    ),
+    ("controller", "manual_failed"): _plain(
+        WARNING, str(QT_TRANSLATE_NOOP("alarms", "A manual command has failed"))
+    ),
+    ("controller", "unattended"): _plain(
+        WARNING,
+        str(QT_TRANSLATE_NOOP("alarms", "Nobody commanded: the rig was run down")),
+        str(QT_TRANSLATE_NOOP("alarms", "Take command.")),
+    ),
     ("controller", "braking_broken_off"): _broken_off,
     ("recorder", "RECORDING_FAILED"): _recording_failed,
     ("supervisor", "run_ended"): _run_ended,

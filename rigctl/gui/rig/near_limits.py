@@ -1,6 +1,6 @@
 """Live values near the watchdog's limits: a warning before the trip, with hysteresis.
 
-Job: from what level on a value is near its limit, and whether it is near now. Plain Python, no Qt. Not its
+Job: from what level on a value is near its limit, and whether it is near now. No widgets. Not its
 job: the limits (`rigctl.safety.limits`; the watchdog alone decides), the list of alarms (`alarm_list`).
 
 The warning begins where no ordered set-point comes: half-way between what the rig allows and the limit, but
@@ -14,8 +14,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
+
 from rigctl.gui.rig.state import Readings
 from rigctl.safety.limits import Limits, load_limits
+
+translate = QCoreApplication.translate
 
 SHARE = 0.95
 HYSTERESIS = 0.02
@@ -59,11 +63,23 @@ class LimitWatch:
         if limits is None:
             return
         for key, name, unit, limit, decimals in (
-            ("pressure", "Brake pressure", "bar", limits.pressure.max_bar, 1),
-            ("speed", "Speed", "1/min", limits.speed.max_rpm, 0),
-            ("torque", "Torque", "N·m", limits.torque.max_nm, 0),
-            ("temperature", "Disc temperature", "°C", limits.disc_temperature.max_degc, 0),
-            ("power", "Friction power", "kW", limits.power.max_kw, 1),
+            (
+                "pressure",
+                str(QT_TRANSLATE_NOOP("alarms", "Brake pressure")),
+                "bar",
+                limits.pressure.max_bar,
+                1,
+            ),
+            ("speed", str(QT_TRANSLATE_NOOP("alarms", "Speed")), "1/min", limits.speed.max_rpm, 0),
+            ("torque", str(QT_TRANSLATE_NOOP("alarms", "Torque")), "N·m", limits.torque.max_nm, 0),
+            (
+                "temperature",
+                str(QT_TRANSLATE_NOOP("alarms", "Disc temperature")),
+                "°C",
+                limits.disc_temperature.max_degc,
+                0,
+            ),
+            ("power", str(QT_TRANSLATE_NOOP("alarms", "Friction power")), "kW", limits.power.max_kw, 1),
         ):
             warn = SHARE * limit
             if key in allowed and allowed[key] < limit:
@@ -100,11 +116,13 @@ class LimitWatch:
             lower = bound.warn - HYSTERESIS * bound.limit
             if value >= bound.warn or (bound.key in self._near and value >= lower):
                 self._near.add(bound.key)
-                words = (
-                    f"{bound.name} {value:.{bound.decimals}f} {bound.unit} is near its limit "
-                    f"{bound.limit:.{bound.decimals}f} {bound.unit}."
+                words = translate("alarms", "{0} {1} is near its limit {2}.").format(
+                    translate("alarms", bound.name),
+                    f"{value:.{bound.decimals}f} {bound.unit}",
+                    f"{bound.limit:.{bound.decimals}f} {bound.unit}",
                 )
-                found.append((bound.key, words, "At the limit the watchdog trips: take some load off."))
+                remedy = translate("alarms", "At the limit the watchdog trips: take some load off.")
+                found.append((bound.key, words, remedy))
             else:
                 self._near.discard(bound.key)
         return found

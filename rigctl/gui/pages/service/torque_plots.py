@@ -23,7 +23,7 @@ _SYMBOLS = {"up": "t1", "down": "t"}
 
 
 class TorquePlots(QWidget):
-    """Line and residuals, rising loads ▲, falling loads ▼."""
+    """Line and residuals; rising loads ▲ and full lines, falling loads ▼ and dashed ones."""
 
     def __init__(self, theme: ThemeKeeper, notify: Callable[[str], None]) -> None:
         super().__init__()
@@ -80,6 +80,8 @@ class TorquePlots(QWidget):
             for edge in (-self._limit(), self._limit()):
                 pen = pg.mkPen(t.text, style=Qt.PenStyle.DashLine)
                 self.residual_plot.addItem(pg.InfiniteLine(edge, 0, pen=pen))
+        if result is not None:
+            self._draw_loops(result)
         for number, point in enumerate(self._points):
             symbol = _SYMBOLS.get(point.series.rpartition(" ")[2], "o")
             style = {"pen": None, "symbol": symbol, "symbolSize": self._theme.px(1.25), "symbolPen": None}
@@ -94,6 +96,17 @@ class TorquePlots(QWidget):
                 low, high = self.residual_plot.viewRange()[1]
                 if span > high:
                     self.residual_plot.setYRange(min(low, -span), span)
+
+    def _draw_loops(self, result: TorqueResult) -> None:
+        """Residuals of rising and falling loads joined: the gap between the lines is the hysteresis."""
+        t = self._theme.current
+        for series in dict.fromkeys(point.series for point in self._points):
+            own = [number for number, point in enumerate(self._points) if point.series == series]
+            falling = series.endswith("down")
+            pen = pg.mkPen(t.muted, style=Qt.PenStyle.DashLine if falling else Qt.PenStyle.SolidLine)
+            applied = [self._points[number].applied for number in own]
+            percent = [100.0 * result.residuals_nm[number] / self._full_nm for number in own]
+            self.residual_plot.plot(applied, percent, pen=pen)
 
     def _limit(self) -> float:
         return TorqueAcceptance().residual_percent
