@@ -11,11 +11,33 @@ from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 
 class ElidedLabel(QLabel):
-    """One line; takes the width it gets."""
+    """One line; takes the width it gets. Another text only repaints it: no layout is computed anew."""
 
     def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
-        super().__init__(text, parent)
+        super().__init__(parent)
+        self._line = text
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(text)
+
+    def text(self) -> str:
+        """The whole text."""
+        return self._line
+
+    def setText(self, text: str) -> None:
+        """Another text."""
+        if text != self._line:
+            self._line = text
+            self.setAccessibleName(text)
+            self.update()
+
+    def clear(self) -> None:
+        """No text."""
+        self.setText("")
+
+    def sizeHint(self) -> QSize:
+        """As wide as the text of the moment, one line high."""
+        metrics = self.fontMetrics()
+        return QSize(metrics.horizontalAdvance(self._line), metrics.height())
 
     def minimumSizeHint(self) -> QSize:
         """A few letters wide, one line high."""

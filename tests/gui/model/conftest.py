@@ -60,10 +60,12 @@ def inline(services):
 def settled(qtbot):
     """Waits until a state has all answers to its present sliders."""
 
-    def wait(state, timeout=10_000):
+    def wait(state, timeout=20_000, *, onsets=True):
         def ready():
-            done = (state.poles, state.onsets, state.locus)
-            return all(done) and not state.busy and state.poles.setting == state.setting
+            done = state.poles and state.locus and state.poles.setting == state.setting
+            if not done or state._poles.busy or state._locus.busy:
+                return False
+            return not onsets or (not state.busy and bool(state.onsets))
 
         qtbot.waitUntil(ready, timeout=timeout)
 

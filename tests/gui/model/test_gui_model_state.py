@@ -52,7 +52,7 @@ def test_while_a_slider_is_dragged_its_path_is_not_computed_again(state, settled
     paths = inline.work.count("locus")
     for k in range(20):
         state.set({PRESSURE: 11.0 + k}, active=PRESSURE)
-        settled(state)
+        settled(state, onsets=False)
     assert inline.work.count("locus") == paths
     state.set({MU: 0.5}, active=MU)
     settled(state)
@@ -74,7 +74,7 @@ def test_a_selected_mode_stays_selected_while_dragging(state, settled):
     settled(state)
     for k in range(30):
         state.set({PRESSURE: 10.0 + k}, active=PRESSURE)
-        settled(state)
+        settled(state, onsets=False)
     assert state.selected.number == 3
     state.select(None)
     settled(state)
@@ -177,7 +177,7 @@ def test_with_the_real_worker_a_drag_is_answered_and_long_work_can_be_cancelled(
     maps.cancel()
     for k in range(10):
         state.set({PRESSURE: 20.0 + k}, active=PRESSURE)
-    settled(state, timeout=60_000)
+    settled(state, timeout=60_000, onsets=False)
     assert state.poles.setting.pressure == 29.0
     assert found == []
     state.deleteLater()

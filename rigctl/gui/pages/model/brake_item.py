@@ -11,12 +11,20 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPolygonF
 
 from rigctl.gui.pages.model.data import Shape
 from rigctl.gui.theme import ThemeKeeper
-from rigctl.model.drawn_brake import DrawnBody, DrawnSpring, displaced, ground_path, label_of, spring_path
+from rigctl.model.drawn_brake import (
+    Drawing,
+    DrawnBody,
+    DrawnSpring,
+    displaced,
+    ground_path,
+    label_of,
+    spring_path,
+)
 
 #: share of the strain energy from which a spring is drawn as strongly strained (as the studies' pictures do)
 _STRAINED = 0.08
@@ -35,11 +43,16 @@ class BrakeItem(pg.GraphicsObject):
         self.phase_rad = 0.0
         self.amplitude = 1.0
         self._looks: dict[str, QColor] = {}
+        self._ground, self._arrow = QPainterPath(), QPainterPath()
 
     def show_shape(self, shape: Shape | None) -> None:
         """Another mode, or none."""
-        self.prepareGeometryChange()
+        before = self.shape_shown
+        if before is None or shape is None or before.drawing.box != shape.drawing.box:
+            self.prepareGeometryChange()
         self.shape_shown = shape
+        self._ground = QPainterPath() if shape is None else _ground_of(shape.drawing)
+        self._arrow = QPainterPath() if shape is None else _arrow_of(shape.drawing)
         self.restyle()
 
     def restyle(self) -> None:
@@ -98,9 +111,13 @@ class BrakeItem(pg.GraphicsObject):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for body in shape.drawing.bodies:
             self._paint_body(painter, body)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(_pen(self._theme.colour("plot_line"), 1.0))
+        painter.drawPath(self._ground)
         for spring in shape.drawing.springs:
             self._paint_spring(painter, shape, spring)
-        self._paint_arrow(painter, shape)
+        painter.setPen(_pen(self._theme.colour("text"), 1.5))
+        painter.drawPath(self._arrow)
 
     def _paint_body(self, painter: QPainter, body: DrawnBody) -> None:
         colour = self._looks[body.name]
@@ -114,7 +131,7 @@ class BrakeItem(pg.GraphicsObject):
         fill.setAlpha(120)
         for outline in body.parts:
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.setPen(_pen(self._theme.colour("plot_line"), 1.0, Qt.PenStyle.DashLine))
+            painter.setPen(_pen(self._theme.colour("line"), 1.0))
             painter.drawPolygon(_polygon(outline))
             painter.setPen(_pen(colour, 1.5))
             painter.setBrush(fill)
@@ -130,22 +147,28 @@ class BrakeItem(pg.GraphicsObject):
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(_pen(colour, 1.0 + 3.0 * math.sqrt(min(share, 1.0))))
         painter.drawPath(_line(spring_path(ends[0], ends[1], spring.kind, 0.012 * size)))
-        if not spring.second[0] and spring.kind != "torsion":
-            painter.setPen(_pen(self._theme.colour("plot_line"), 1.0))
-            painter.drawPath(_line(ground_path(spring.first[1], spring.second[1], 0.03 * size)))
 
-    def _paint_arrow(self, painter: QPainter, shape: Shape) -> None:
-        disc = next((body for body in shape.drawing.bodies if body.role == "disc"), None)
-        if disc is None:
-            return
-        size = shape.drawing.size
-        left = float(disc.parts[0][:, 0].min())
-        y = float(disc.parts[0][:, 1].max()) + 0.025 * size
-        tip, head = left + 0.13 * size, 0.012 * size
-        points = [(left, y), (tip, y), (tip - head, y + head / 2), (np.nan, np.nan), (tip, y)]
-        points.append((tip - head, y - head / 2))
-        painter.setPen(_pen(self._theme.colour("text"), 1.5))
-        painter.drawPath(_line(np.array(points)))
+
+def _ground_of(drawing: Drawing) -> QPainterPath:
+    """The ground under all springs that end there."""
+    path = QPainterPath()
+    for spring in drawing.springs:
+        if not spring.second[0] and spring.kind != "torsion":
+            path.addPath(_line(ground_path(spring.first[1], spring.second[1], 0.03 * drawing.size)))
+    return path
+
+
+def _arrow_of(drawing: Drawing) -> QPainterPath:
+    """The sense in which the disc moves."""
+    disc = next((body for body in drawing.bodies if body.role == "disc"), None)
+    if disc is None:
+        return QPainterPath()
+    size = drawing.size
+    left = float(disc.parts[0][:, 0].min())
+    y = float(disc.parts[0][:, 1].max()) + 0.025 * size
+    tip, head = left + 0.13 * size, 0.012 * size
+    points = [(left, y), (tip, y), (tip - head, y + head / 2), (np.nan, np.nan), (tip, y)]
+    return _line(np.array([*points, (tip - head, y - head / 2)]))
 
 
 def _pen(colour: QColor, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
@@ -156,19 +179,9 @@ def _pen(colour: QColor, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLin
 
 
 def _polygon(points: np.ndarray) -> QPolygonF:
-    return QPolygonF([QPointF(x, y) for x, y in points.tolist()])
+    return pg.functions.arrayToQPolygonF(points[:, 0], points[:, 1])
 
 
 def _line(points: np.ndarray) -> QPainterPath:
     """Lines between points (k, 2); nan lifts the pen."""
-    path = QPainterPath()
-    down = False
-    for x, y in points.tolist():
-        if math.isnan(x):
-            down = False
-        elif down:
-            path.lineTo(x, y)
-        else:
-            path.moveTo(x, y)
-            down = True
-    return path
+    return pg.functions.arrayToQPath(points[:, 0], points[:, 1], connect="finite")

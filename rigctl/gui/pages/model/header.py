@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from rigctl.gui.pages.model.brake_choice import BrakeChoice
@@ -15,6 +14,7 @@ from rigctl.gui.pages.model.data import BrakeFacts, Onsets, Poles
 from rigctl.gui.pages.model.state import ModelState
 from rigctl.gui.pages.model.words import now_text, onset_text
 from rigctl.gui.theme import ThemeKeeper
+from rigctl.gui.widgets.elided import ElidedLabel
 
 
 class ModelHeader(QWidget):
@@ -33,15 +33,11 @@ class ModelHeader(QWidget):
                 "Second brake file: its poles are drawn as hollow diamonds, at the same µ, pressure and k"
             )
         )
-        self.onset, self.now, self.beside = QLabel(), QLabel(), QLabel()
+        self.onset, self.now, self.beside = ElidedLabel(), ElidedLabel(), ElidedLabel()
         self.onset.setObjectName("model-onset")
         self.now.setObjectName("model-now")
         for label in (self.now, self.beside):
             label.setProperty("look", "muted")
-        for label in (self.onset, self.now, self.beside):
-            label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-            label.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-            label.setWordWrap(True)
         self._arrange()
         self.brake.valueChanged.connect(state.open)
         self.other.valueChanged.connect(state.compare)

@@ -47,12 +47,20 @@ class KnobTable(QAbstractTableModel):
         self._theme = theme
         self.rows: list[Knob] = []
         self._factors: dict[str, float] = {}
+        self.restyle()
+
+    def restyle(self) -> None:
+        """Take the present look."""
+        self._fonts = {bold: self._theme.font("normal", bold=bold) for bold in (False, True)}
+        self._colours = {
+            True: QColor(self._theme.current.blue), False: QColor(self._theme.current.text)
+        }  # fmt: skip
 
     def show(self, rows: Sequence[Knob], factors: Mapping[str, float]) -> None:
         """Show these rows; keeps the view's selection where the rows stay the same."""
-        self._factors = dict(factors)
+        before, self._factors = self._factors, dict(factors)
         if [knob.key for knob in rows] == [knob.key for knob in self.rows]:
-            if rows:
+            if rows and before != self._factors:
                 self.dataChanged.emit(self.index(0, 1), self.index(len(rows) - 1, 1))
             return
         self.beginResetModel()
@@ -92,7 +100,7 @@ class KnobTable(QAbstractTableModel):
         elif role == roles.TextAlignmentRole and index.column() == 1:
             found = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         elif role == roles.FontRole:
-            found = self._theme.font("normal", bold=changed)
+            found = self._fonts[changed]
         elif role == roles.ForegroundRole:
-            found = QColor(self._theme.current.blue if changed else self._theme.current.text)
+            found = self._colours[changed]
         return found

@@ -39,6 +39,7 @@ class LocusPlot(pg.PlotWidget):
         super().__init__()
         self._theme = theme
         self._poles: Poles | None = None
+        self._ghosts_of: tuple[Pole, ...] | None = None
         self._locus: LocusLines | None = None
         self._mouse: QPointF | None = None
         self.setAccessibleName(self.tr("Plane of eigenvalues"))
@@ -93,6 +94,7 @@ class LocusPlot(pg.PlotWidget):
             text.setFont(self._theme.font("small"))
         for text, words in zip(self._halves, (self.tr("stable"), self.tr("unstable")), strict=True):
             text.setText(words, color=t.muted)
+        self._ghosts_of = None
         self._draw_locus()
         self._draw_poles()
 
@@ -131,6 +133,7 @@ class LocusPlot(pg.PlotWidget):
         if found is None:
             for item in (self._marks, self._ghosts, self._ring):
                 item.setData([], [])
+            self._ghosts_of = None
             return
         edge = pg.mkPen(t.text, width=1.2)
         spots = [
@@ -144,14 +147,20 @@ class LocusPlot(pg.PlotWidget):
             for pole in found.poles
         ]
         self._marks.setData(spots)
-        self._ghosts.setData(
-            [p.real_part_1_s for p in found.other], [p.frequency_hz for p in found.other],
-            symbol="d", size=px(1.5), brush=None, pen=pg.mkPen(t.muted, width=1.5),
-        )  # fmt: skip
+        if found.other != self._ghosts_of:
+            self._draw_ghosts(found.other)
         chosen = found.selected
         self._ring.setData(
             [chosen.real_part_1_s], [chosen.frequency_hz],
             symbol="o", size=px(3), brush=None, pen=pg.mkPen(t.blue, width=2.5),
+        )  # fmt: skip
+
+    def _draw_ghosts(self, other: tuple[Pole, ...]) -> None:
+        self._ghosts_of = other
+        t, px = self._theme.current, self._theme.px
+        self._ghosts.setData(
+            [p.real_part_1_s for p in other], [p.frequency_hz for p in other],
+            symbol="d", size=px(1.5), brush=None, pen=pg.mkPen(t.muted, width=1.5),
         )  # fmt: skip
 
     def _draw_locus(self) -> None:

@@ -7,8 +7,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt, Signal
-from PySide6.QtGui import QColor
+from PySide6.QtCore import (
+    QAbstractTableModel,
+    QCoreApplication,
+    QModelIndex,
+    QPersistentModelIndex,
+    Qt,
+    Signal,
+)
+from PySide6.QtGui import QColor, QFontMetrics
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 from rigctl.gui.format import number_text
@@ -18,6 +25,14 @@ from rigctl.gui.theme import ThemeKeeper
 
 Index = QModelIndex | QPersistentModelIndex
 
+_LEFT = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+_RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+_ALIGNED = (_RIGHT, _LEFT, _RIGHT, _RIGHT, _RIGHT)
+#: roles as plain numbers: comparing Qt's enumerations takes longer than all else
+_DISPLAY, _ALIGNMENT = int(Qt.ItemDataRole.DisplayRole), int(Qt.ItemDataRole.TextAlignmentRole)
+_FONT, _GROUND = int(Qt.ItemDataRole.FontRole), int(Qt.ItemDataRole.BackgroundRole)
+_LOOKS = frozenset((_FONT, _GROUND, int(Qt.ItemDataRole.ForegroundRole)))
+
 
 class ModeRows(QAbstractTableModel):
     """Poles as rows."""
@@ -26,6 +41,13 @@ class ModeRows(QAbstractTableModel):
         super().__init__()
         self._theme = theme
         self.poles: tuple[Pole, ...] = ()
+        self.restyle()
+
+    def restyle(self) -> None:
+        """Take the present look."""
+        self._bold = self._theme.font("normal", bold=True)
+        self._amber = QColor(self._theme.current.amber)
+        self._on_amber = QColor(self._theme.current.on_amber)
 
     def show(self, poles: tuple[Pole, ...]) -> None:
         """Other poles; rows stay where their number stays."""
@@ -57,30 +79,31 @@ class ModeRows(QAbstractTableModel):
         if role == Qt.ItemDataRole.ToolTipRole and section == 3:
             return self.tr("Damping ratio −Re / |λ|, percent of critical; negative: the mode grows")
         if role == Qt.ItemDataRole.TextAlignmentRole:
-            return int(_alignment(section))
+            return _ALIGNED[section]
         return None
 
     def data(self, index: Index, role: int = 0) -> Any:
-        """Texts and looks."""
-        pole, column = self.poles[index.row()], index.column()
-        roles = Qt.ItemDataRole
-        if role == roles.DisplayRole:
-            return (
-                str(pole.number),
-                f"{UNSTABLE_MARK if pole.unstable else STABLE_MARK} {state_word(pole)}",
-                number_text(pole.frequency_hz, 1),
-                number_text(100.0 * pole.damping_ratio, 2),
-                number_text(pole.real_part_1_s, 1),
-            )[column]
-        if role == roles.TextAlignmentRole:
-            return int(_alignment(column))
-        if role == roles.BackgroundRole and column == 1 and pole.unstable:
-            return QColor(self._theme.current.amber)
-        if role == roles.ForegroundRole and column == 1 and pole.unstable:
-            return QColor(self._theme.current.on_amber)
-        if role == roles.FontRole and pole.unstable:
-            return self._theme.font("normal", bold=True)
+        """Texts and looks; asked some hundred times with every step of a slider."""
+        column = index.column()
+        if role == _ALIGNMENT:
+            return _ALIGNED[column]
+        if role == _DISPLAY:
+            return self._text(self.poles[index.row()], column)
+        if role in _LOOKS and self.poles[index.row()].unstable:
+            if role == _FONT:
+                return self._bold
+            if column == 1:
+                return self._amber if role == _GROUND else self._on_amber
         return None
+
+    def _text(self, pole: Pole, column: int) -> str:
+        if column == 1:
+            return f"{UNSTABLE_MARK if pole.unstable else STABLE_MARK} {state_word(pole)}"
+        if column == 2:
+            return number_text(pole.frequency_hz, 1)
+        if column == 3:
+            return number_text(100.0 * pole.damping_ratio, 2)
+        return number_text(pole.real_part_1_s, 1) if column else str(pole.number)
 
 
 class ModeTable(QTableView):
@@ -107,8 +130,8 @@ class ModeTable(QTableView):
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        for column in (0, 1):  # not by contents: they would be measured anew with every step of a slider
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.Fixed)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.selectionModel().currentRowChanged.connect(self._on_row)
         theme.changed.connect(self._restyle)
@@ -116,6 +139,11 @@ class ModeTable(QTableView):
 
     def _restyle(self) -> None:
         self.verticalHeader().setDefaultSectionSize(self._theme.px(3))
+        self.rows.restyle()
+        metrics = QFontMetrics(self._theme.font("normal", bold=True))
+        words = f"{UNSTABLE_MARK} {QCoreApplication.translate('model', 'unstable')}"
+        self.setColumnWidth(0, metrics.horizontalAdvance("00000"))
+        self.setColumnWidth(1, metrics.horizontalAdvance(words) + self._theme.px(2))
         self.setMinimumHeight(self._theme.px(16))
 
     def show_poles(self, poles: Poles | None) -> None:
@@ -135,9 +163,3 @@ class ModeTable(QTableView):
     def _on_row(self, index: QModelIndex, _before: QModelIndex) -> None:
         if index.isValid() and not self._showing:
             self.picked.emit(self.rows.poles[index.row()])
-
-
-def _alignment(column: int) -> Qt.AlignmentFlag:
-    left = column == 1
-    side = Qt.AlignmentFlag.AlignLeft if left else Qt.AlignmentFlag.AlignRight
-    return side | Qt.AlignmentFlag.AlignVCenter

@@ -21,7 +21,7 @@ from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.model.drawn_brake import label_of
 
 #: time of one period on screen, and between pictures
-PERIOD_S, FRAME_MS = 1.6, 33
+PERIOD_S, FRAME_MS = 1.6, 40
 #: lines of words, bodies or springs named at most, and the share from which they are named
 _LINES, _MOST_NAMES, _LEAST_SHARE = 3, 3, 0.1
 
@@ -165,7 +165,9 @@ class ModeView(QWidget):
 
     def _show(self) -> None:
         degrees = self.phase.value()
-        self.phase_text.setText(f"{degrees}°")
+        text = "" if self.playing else f"{degrees}°"  # a text that changes lays the page out anew
+        if text != self.phase_text.text():
+            self.phase_text.setText(text)
         self.item.move(math.radians(degrees), self.amplitude.value() / 10.0)
         for name, (x, y) in self.item.label_places().items():
             self._names[name].setPos(x, y)
@@ -194,6 +196,7 @@ class ModeView(QWidget):
             self._timer.start()
         else:
             self._timer.stop()
+            self._show()
 
     def _say_play(self) -> None:
         self.play.setText(self.tr("Pause") if self._playing_wanted else self.tr("Play"))

@@ -80,7 +80,7 @@ class SlidersPanel(QWidget):
         header = table.horizontalHeader()
         header.setHighlightSections(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.Fixed)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         table.setToolTip(self.tr("Choose what the slider below changes"))
 
@@ -129,6 +129,8 @@ class SlidersPanel(QWidget):
         self._checks.setSpacing(px(1))
         self.table.verticalHeader().setDefaultSectionSize(px(3))
         self.table.setMinimumHeight(px(12))
+        self.table.setColumnWidth(1, px(9))
+        self.knobs.restyle()
         for slider in (*self.sliders.values(), self.factor):
             slider.setActive(False)
         self.refresh()

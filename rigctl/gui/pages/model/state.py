@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from rigctl.gui.pages.model import worker
 from rigctl.gui.pages.model.data import (
@@ -31,6 +31,8 @@ from rigctl.gui.services import Services
 LANE = "model"
 #: a slider's own pressure at first: the middle of what rigs brake with
 START_PRESSURE_BAR = 10.0
+#: the onset takes longer than the poles: while a slider is dragged it is asked for this seldom
+ONSET_MS = 80
 
 
 class ModelState(QObject):
@@ -83,6 +85,10 @@ class ModelState(QObject):
         self._locus = Latest(work, worker.locus, LANE, self)
         self._poles.answered.connect(self._take_poles)
         self._poles.failed.connect(self.wrong)
+        self._onset_timer = QTimer(self)
+        self._onset_timer.setSingleShot(True)
+        self._onset_timer.setInterval(ONSET_MS)
+        self._onset_timer.timeout.connect(self._ask_onsets)
         self._onsets.answered.connect(self._take_onsets)
         self._onsets.failed.connect(self.wrong)
         self._locus.answered.connect(self._take_locus)
@@ -193,9 +199,8 @@ class ModelState(QObject):
     @property
     def busy(self) -> bool:
         """Whether answers are still to come."""
-        return any(
-            latest.busy for latest in (*self._readers.values(), self._poles, self._onsets, self._locus)
-        )
+        latests = (*self._readers.values(), self._poles, self._onsets, self._locus)
+        return self._onset_timer.isActive() or any(latest.busy for latest in latests)
 
     # -- modes ------------------------------------------------------------------------------------
 
@@ -216,14 +221,19 @@ class ModelState(QObject):
         if self.facts is None:
             return
         self._ask_poles()
-        other = None if self.other is None else self.other.file
-        self._onsets.ask(self.facts.file, self.setting, other)
+        if not self._onset_timer.isActive():
+            self._onset_timer.start()
         self._ask_locus()
 
     def _ask_poles(self) -> None:
         if self.facts is not None:
             other = None if self.other is None else self.other.file
             self._poles.ask(self.facts.file, self.setting, self._near, other, self._pick)
+
+    def _ask_onsets(self) -> None:
+        if self.facts is not None:
+            other = None if self.other is None else self.other.file
+            self._onsets.ask(self.facts.file, self.setting, other)
 
     def _ask_locus(self) -> None:
         """Ask for a path where the one there is does not belong to the sliders any more."""
