@@ -13,6 +13,7 @@ from typing import Final
 
 from rigctl.core.errors import RecordingError
 from rigctl.core.journal import Journal
+from rigctl.recording.annotations import read_annotations
 from rigctl.recording.braking import Evaluator
 from rigctl.recording.braking_file import read_summary, verify
 from rigctl.recording.campaign import COMMITTED, Campaign, file_sha256
@@ -167,5 +168,12 @@ def _check_files(
         )
         journaled.append(index)
     missing = (index for index in committed if not campaign.braking_path(index).exists())
-    damaged += [(campaign.braking_path(index), "the file has gone.") for index in sorted(missing)]
+    said = read_annotations(campaign.folder)
+    damaged += [
+        (
+            campaign.braking_path(index),
+            f"braking {index} is in the trash." if said.of(index).trashed else "the file has gone.",
+        )
+        for index in sorted(missing)
+    ]
     return tuple(journaled), tuple(damaged)

@@ -80,7 +80,7 @@ def test_it_plays_at_the_rate_of_the_output_and_stops_when_the_page_is_left(open
         sound.play.click()
     (stream,) = module.streams
     assert stream.samplerate == 48_000.0 and abs(stream.block).max() <= 1.0
-    assert "Stop" in sound.play.text().replace("&", "") and "louder by" in sound.words.text()
+    assert "Stop" in sound.play.text().replace("&", "") and "Louder by" in sound.words.text()
     opened.deactivated()
     assert stream.closed and not sound.player.busy
 

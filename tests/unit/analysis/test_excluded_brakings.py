@@ -11,7 +11,10 @@ from rigctl.analysis.report import build_report
 from rigctl.analysis.summary import in_words, summarise
 from rigctl.app.cli import app
 from rigctl.recording.annotations import Action, annotate, annotate_many
+from rigctl.recording.campaign import open_campaign
 from rigctl.recording.catalogue import FILE_NAME, Catalogue
+from rigctl.recording.recovery import recover
+from rigctl.recording.trash import restore_braking, trash_braking
 
 LOUD = (2350.0, 92.0, 1.0, 2.3)
 
@@ -89,3 +92,13 @@ def test_without_the_right_to_write_the_catalogue_is_in_memory(three):
     with Catalogue(three) as catalogue:
         assert len(catalogue.update(catalogue.read().stale).summaries) == 3
     three.chmod(0o755)
+
+
+def test_resume_says_that_a_braking_is_in_the_trash(three):
+    (three / "campaign.toml").write_text("")
+    opened = open_campaign(three)
+    assert len(recover(opened).journaled) == 3
+    trash_braking(three, 2)
+    assert [words for _, words in recover(opened).damaged] == ["braking 2 is in the trash."]
+    restore_braking(three, "00002.h5")
+    assert recover(opened).nothing_to_do

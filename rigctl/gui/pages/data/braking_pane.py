@@ -18,7 +18,7 @@ from rigctl.core.channels import DISC_TEMPERATURE, MICROPHONE, PRESSURE, SPEED, 
 from rigctl.gui.format import frequency_text, number_text, quantity_text
 from rigctl.gui.pages.data import remote
 from rigctl.gui.pages.data.columns import state_text
-from rigctl.gui.pages.data.details import EventsTable, LinesTable
+from rigctl.gui.pages.data.details import EventsTable, LinesTable, MarksTable
 from rigctl.gui.pages.data.entry import Entry
 from rigctl.gui.pages.data.marks import marks_of
 from rigctl.gui.pages.data.notes import NotesPanel
@@ -69,12 +69,13 @@ class BrakingPane(QWidget):
         )
         self.metadata = LinesTable(theme, "data-metadata", (self.tr("Name"), self.tr("Value")))
         self.notes = NotesPanel(theme)
+        self.marks = MarksTable(theme)
         self.tabs = QTabWidget()
         self.tabs.setObjectName("data-details")
         self.tabs.setDocumentMode(True)
         self._make_layout()
         self.events.chosen.connect(self.rows.show_event)
-        self.notes.markChosen.connect(lambda t: self.rows.show_event(t, t))
+        self.marks.chosen.connect(self.rows.show_event)
         self.sound.position.connect(self.rows.set_play)
         theme.changed.connect(self._restyle)
         self._restyle()
@@ -95,7 +96,8 @@ class BrakingPane(QWidget):
         for widget, text in (
             (self.events, self.tr("Events")),
             (self.results, self.tr("Results")),
-            (self.notes, self.tr("Notes, marks")),
+            (self.notes, self.tr("Notes")),
+            (self.marks, self.tr("Marks")),
             (self.metadata, self.tr("Metadata")),
         ):
             self.tabs.addTab(widget, text)
@@ -154,6 +156,7 @@ class BrakingPane(QWidget):
     def set_wide(self, wide: bool) -> None:
         """Tables beside the plots instead of below them."""
         self.split.setOrientation(Qt.Orientation.Horizontal if wide else Qt.Orientation.Vertical)
+        self.split.setSizes([200, 100] if wide else [210, 90])  # shares
 
     def _drop_job(self) -> None:
         if self._job is not None:
@@ -182,6 +185,7 @@ class BrakingPane(QWidget):
         available = self.rows.available()
         for name, switch in self.switches.items():
             switch.setVisible(name in available)
+        self.marks.show_marks(marks)
         self.events.show_events(view.summary["events"] if view else {})
         self.results.show_lines(result_lines(view.summary) if view else [])
         self.metadata.show_lines(self._metadata(view) if view else [])
@@ -191,10 +195,9 @@ class BrakingPane(QWidget):
         self._said = said
         entry = self._entry
         if entry is None:
-            self.notes.show_entry(None, (), "", ())
+            self.notes.show_entry(None, (), "")
             return
-        marks = tuple(marks_of(entry.marks))
-        self.notes.show_entry(entry, said.said, said.note, marks)
+        self.notes.show_entry(entry, said.said, said.note)
         row = entry.row
         if self._problem:
             self._say(self._problem)

@@ -1,4 +1,4 @@
-"""Tables below the plots of a braking: events, results, metadata.
+"""Tables below the plots of a braking: events, marks, results, metadata.
 
 Job: show lines of text; say which event was chosen. Not its job: words and numbers (`results`), `notes`.
 """
@@ -12,6 +12,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem
 
 from rigctl.gui.format import number_text
+from rigctl.gui.pages.data.marks import Mark
 from rigctl.gui.theme import ThemeKeeper
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
@@ -114,3 +115,26 @@ class EventsTable(LinesTable):
         rows = {index.row() for index in self.selectedIndexes()}
         if len(rows) == 1 and (times := self._times[rows.pop()]) is not None:
             self.chosen.emit(*times)
+
+
+class MarksTable(LinesTable):
+    """What happened while the braking was recorded; choosing a mark shows its time."""
+
+    chosen = Signal(float, float)
+
+    def __init__(self, theme: ThemeKeeper) -> None:
+        super().__init__(theme, "data-marks", (self.tr("Time\ns"), self.tr("What happened")), right=(0,))
+        self._times: list[float] = []
+        self.setToolTip(self.tr("Marks of the recording; click one to see it in time"))
+        self.itemSelectionChanged.connect(self._on_selected)
+
+    def show_marks(self, marks: Sequence[Mark]) -> None:
+        """Marks in order of time."""
+        self._times = [mark.time_s for mark in marks]
+        self.show_lines([(number_text(mark.time_s, 2), mark.words) for mark in marks])
+
+    def _on_selected(self) -> None:
+        rows = {index.row() for index in self.selectedIndexes()}
+        if len(rows) == 1:
+            time_s = self._times[rows.pop()]
+            self.chosen.emit(time_s, time_s)

@@ -98,7 +98,6 @@ class ExportBar(QWidget):
         buttons.addWidget(self.cancel)
         buttons.addStretch(1)
         self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(self.words)
         self._column.addLayout(self._flow)
         self._column.addLayout(folder_row)
@@ -220,7 +219,8 @@ class ExportBar(QWidget):
 
     def _restyle(self) -> None:
         u = self._services.theme.px
-        self._column.setSpacing(u(0.5))
+        self._column.setContentsMargins(u(1), 0, u(1), u(1))
+        self._column.setSpacing(u(1))
         self._flow.setSpacing(u(2))
 
 

@@ -1,4 +1,4 @@
-"""What people say about a braking: tags, note, noise rating, and the marks of the time it was recorded.
+"""What people say about a braking: tags, note, noise rating, and what was said when it was recorded.
 
 Job: fields for the braking that is open; what is given goes to the `Annotator`. Not its job: writing it.
 """
@@ -12,16 +12,12 @@ from PySide6.QtWidgets import (
     QFormLayout,
     QLabel,
     QLineEdit,
-    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
 from rigctl.core.errors import ConfigError
-from rigctl.gui.format import number_text
-from rigctl.gui.pages.data.details import LinesTable
 from rigctl.gui.pages.data.entry import Entry
-from rigctl.gui.pages.data.marks import Mark
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.field_grid import FaultLabel, set_wrong
 from rigctl.gui.widgets.rating_row import RATINGS
@@ -94,7 +90,6 @@ class NotesPanel(QWidget):
     """Entry, tags to add, tags to remove."""
     noteGiven = Signal(object, str)
     ratingGiven = Signal(object, object)
-    markChosen = Signal(float)
 
     def __init__(self, theme: ThemeKeeper) -> None:
         super().__init__()
@@ -117,10 +112,6 @@ class NotesPanel(QWidget):
         self.rating.addItem(self.tr("not rated"), None)
         for number in RATINGS:
             self.rating.addItem(ends.get(number, str(number)), number)
-        self.marks = LinesTable(theme, "data-marks", (self.tr("at s"), self.tr("What happened")), right=(0,))
-        self.marks.setToolTip(self.tr("Marks of the recording; click one to see it in time"))
-        self.marks.itemSelectionChanged.connect(self._on_mark)
-        self._times: list[float] = []
         self._form = QFormLayout()
         self._form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.ExpandingFieldsGrow)
         self._form.addRow(self.tr("Ta&gs"), self.tags)
@@ -130,15 +121,14 @@ class NotesPanel(QWidget):
         self._form.addRow(self.tr("Said then"), self.said)
         self._column = QVBoxLayout(self)
         self._column.addLayout(self._form)
-        self._column.addWidget(self.marks, 1)
+        self._column.addStretch(1)
         self.tags.valueChanged.connect(self._on_tags)
         self.note.editingFinished.connect(self._on_note)
         self.rating.activated.connect(self._on_rating)
         self._note_before = ""
-        self.marks.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
         theme.changed.connect(self._restyle)
         self._restyle()
-        self.show_entry(None, (), "", ())
+        self.show_entry(None, (), "")
 
     def _restyle(self) -> None:
         u = self._theme.px
@@ -147,9 +137,7 @@ class NotesPanel(QWidget):
         self._form.setHorizontalSpacing(u(1))
         self._form.setVerticalSpacing(u(0.5))
 
-    def show_entry(
-        self, entry: Entry | None, said: tuple[str, ...], note: str, marks: tuple[Mark, ...]
-    ) -> None:
+    def show_entry(self, entry: Entry | None, said: tuple[str, ...], note: str) -> None:
         """Another braking, or other words about it; what is being typed about the same one stays."""
         same = entry is not None and self._entry is not None and entry.name == self._entry.name
         self._entry = entry
@@ -165,8 +153,6 @@ class NotesPanel(QWidget):
         self.rating.setCurrentIndex(max(place, 0))
         self.said.setText(" · ".join(said))
         self._form.setRowVisible(self.said, bool(said))
-        self._times = [mark.time_s for mark in marks]
-        self.marks.show_lines([(number_text(mark.time_s, 2), mark.words) for mark in marks])
 
     def _on_tags(self, tags: tuple[str, ...]) -> None:
         if self._entry is not None:
@@ -184,8 +170,3 @@ class NotesPanel(QWidget):
         rating = self.rating.currentData()
         if self._entry is not None and rating != self._entry.row.rating:
             self.ratingGiven.emit(self._entry, rating)
-
-    def _on_mark(self) -> None:
-        rows = {index.row() for index in self.marks.selectedIndexes()}
-        if len(rows) == 1:
-            self.markChosen.emit(self._times[rows.pop()])

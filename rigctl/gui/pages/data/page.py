@@ -17,7 +17,7 @@ from rigctl.gui.pages.data.annotator import Annotator
 from rigctl.gui.pages.data.campaigns import CampaignInfo, find_campaigns, is_campaign
 from rigctl.gui.pages.data.entry import TRASHED, Entry
 from rigctl.gui.pages.data.export_bar import show_in_file_manager
-from rigctl.gui.pages.data.loader import CampaignLoader
+from rigctl.gui.pages.data.loader import PIECE, CampaignLoader
 from rigctl.gui.pages.data.parts import Parts
 from rigctl.gui.pages.data.reports import ReportBuilder
 from rigctl.gui.services import Services
@@ -236,7 +236,9 @@ class DataPage(Page):
             return
         self.loader.hear(records)
         new = [f"{BRAKINGS}/{r.payload['file']}" for r in records if r.kind == COMMITTED]
-        if new:
+        if len(new) > PIECE:  # all records of a campaign that the window has just attached to
+            self.loader.refresh()
+        elif new:
             self.loader.read(new)
 
     def _on_moved(self, gone: list[str], come: list[str]) -> None:

@@ -23,7 +23,7 @@ class Parts(QStackedWidget):
 
     def __init__(self, services: Services) -> None:
         super().__init__()
-        theme = self._theme = services.theme
+        theme = services.theme
         self.campaigns = CampaignPane(theme)
         self.table = TablePane(theme)
         self.braking = BrakingPane(services)
@@ -42,15 +42,12 @@ class Parts(QStackedWidget):
         self.large.setCheckable(True)
         self.large.setToolTip(self.tr("Hide list and table (F11); Esc brings them back"))
         self.tabs.setCornerWidget(self.large)
-        self._export_box = QWidget()
-        self._export_column = QVBoxLayout(self._export_box)
-        self._export_column.addWidget(self.export)
         self._middle = QWidget()
         column = QVBoxLayout(self._middle)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self.table, 1)
-        column.addWidget(self._export_box)
+        column.addWidget(self.export)
         self.split = QSplitter(Qt.Orientation.Horizontal)
         for part, stretch in ((self.campaigns, 0), (self._middle, 4), (self.tabs, 5)):
             self.split.addWidget(part)
@@ -60,8 +57,6 @@ class Parts(QStackedWidget):
         self.addWidget(self.split)
         self.addWidget(self.empty)
         self.large.toggled.connect(self._on_large)
-        theme.changed.connect(self._restyle)
-        self._restyle()
 
     def show_data(self, there: bool) -> None:
         """The data, or the way to the first braking."""
@@ -76,7 +71,3 @@ class Parts(QStackedWidget):
         self.campaigns.setVisible(not large)
         self._middle.setVisible(not large)
         self.braking.set_wide(large)
-
-    def _restyle(self) -> None:
-        unit = self._theme.px(1)
-        self._export_column.setContentsMargins(unit, 0, unit, 0)

@@ -7,15 +7,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QCheckBox, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from rigctl.core.channels import MICROPHONE
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.data import remote
 from rigctl.gui.pages.data.player import Player
 from rigctl.gui.services import Services
-from rigctl.gui.widgets.elided import ElidedLabel
 from rigctl.gui.widgets.file_asking import ask_save
 from rigctl.gui.widgets.flow import FlowLayout
 
@@ -50,7 +49,9 @@ class SoundBar(QWidget):
             self.tr("The sound as recorded, 16 bit; Pa per count stands in the file's comment")
         )
         self.save.clicked.connect(self._on_save)
-        self.words = ElidedLabel()
+        self.words = QLabel()
+        self.words.setWordWrap(True)
+        self.words.setTextFormat(Qt.TextFormat.PlainText)
         self.words.setProperty("look", "muted")
         self.words.setObjectName("data-sound-words")
         self._flow = FlowLayout()
@@ -84,19 +85,19 @@ class SoundBar(QWidget):
         self._rate_hz, self._name = rate_hz or 0.0, name
         for widget in (self.play, self.save, self.equal):
             widget.setEnabled(self._path is not None)
-        self._say(self.tr("recorded without sound") if path is not None and not rate_hz else "")
+        self._say(self.tr("Recorded without sound") if path is not None and not rate_hz else "")
 
     def _on_play(self) -> None:
         if self.player.busy:
             self.player.stop()
         elif self._path is not None:
-            self._say(self.tr("preparing …"))
+            self._say(self.tr("Preparing …"))
             self.player.play(self._path, self.equal.isChecked(), self._rate_hz)
             self._show_button()
 
     def _on_started(self, gain_db: float) -> None:
         if self.equal.isChecked():
-            self._say(self.tr("louder by {0} dB").format(number_text(gain_db, 0)))
+            self._say(self.tr("Louder by {0} dB").format(number_text(gain_db, 0)))
         else:
             self._say(self.tr("20 Pa is full scale"))
         self._show_button()
@@ -104,7 +105,7 @@ class SoundBar(QWidget):
     def _on_stopped(self) -> None:
         self.position.emit(None)
         self._show_button()
-        if self.words.text() == self.tr("preparing …"):
+        if self.words.text() == self.tr("Preparing …"):
             self._say("")
 
     def _show_button(self) -> None:
@@ -135,7 +136,7 @@ class SoundBar(QWidget):
         )  # fmt: skip
 
     def _say(self, words: str) -> None:
-        self.words.setText(words)
+        self.words.setText(words[:1].upper() + words[1:])
         self.words.setVisible(bool(words))
 
 

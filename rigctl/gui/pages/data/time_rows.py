@@ -6,22 +6,21 @@ below the mouse, zoom by wheel along the time. Not its job: reading the braking,
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPoint, QRectF, Qt, Signal
-from PySide6.QtGui import QContextMenuEvent, QFontMetricsF, QGuiApplication
+from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtGui import QContextMenuEvent, QGuiApplication
 from PySide6.QtWidgets import QMenu
 
-from rigctl.analysis.braking_view import LEVEL, MU, BrakingView, Curve, SoundPicture
+from rigctl.analysis.braking_view import LEVEL, MU, BrakingView, SoundPicture
 from rigctl.core.channels import DISC_TEMPERATURE, MICROPHONE, PRESSURE, SPEED, TORQUE
 from rigctl.gui.format import number_text
 from rigctl.gui.pages.data.marks import Mark
+from rigctl.gui.pages.data.row import FewTicks, Row
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.file_asking import ask_save
 from rigctl.gui.widgets.plot_dress import save_picture
@@ -33,39 +32,6 @@ _TALL = 3
 _LEAST_FIRST = (SPEED, LEVEL, DISC_TEMPERATURE, TORQUE, MU, PRESSURE, MICROPHONE)
 """Rows that give way first where there is little room."""
 _LEAST_HEIGHT = 3.25
-_RANGE_DB = 70.0
-
-
-class _Row:
-    """One plot with its title, cursor lines and curve."""
-
-    def __init__(self, item: Any, name: str) -> None:
-        self.item = item
-        self.name = name
-        self.title = pg.LabelItem(justify="left")
-        self.cursor = pg.InfiniteLine(angle=90, movable=False)
-        self.play = pg.InfiniteLine(angle=90, movable=False)
-        self.curve: Any = None
-        self.image: Any = None
-        self.extras: list[Any] = []
-
-
-class FewTicks(pg.AxisItem):
-    """A value axis with as many ticks as have room below each other: low rows have two or three."""
-
-    def __init__(self, theme: ThemeKeeper) -> None:
-        super().__init__("left")
-        self._line_px = QFontMetricsF(theme.font("small")).height()
-
-    def tickSpacing(self, minVal: float, maxVal: float, size: float) -> Any:
-        """One level of ticks, at 1, 2 or 5 times a power of ten."""
-        span = abs(maxVal - minVal)
-        if span == 0.0 or not math.isfinite(span):
-            return super().tickSpacing(minVal, maxVal, size)
-        least = span / max(size / (1.3 * self._line_px), 2.0)
-        power = 10.0 ** math.floor(math.log10(least))
-        step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least * 0.999)
-        return [(step, 0.0)]
 
 
 class TimeRows(pg.GraphicsLayoutWidget):
@@ -84,7 +50,7 @@ class TimeRows(pg.GraphicsLayoutWidget):
         self.shown: set[str] = {name for name in ROWS if name != LEVEL}
         self._view: BrakingView | None = None
         self._marks: Sequence[Mark] = ()
-        self._rows: dict[str, _Row] = {}
+        self._rows: dict[str, Row] = {}
         self._play_s: float | None = None
         scene: Any = self.scene()
         scene.sigMouseMoved.connect(self._on_mouse)
@@ -96,7 +62,13 @@ class TimeRows(pg.GraphicsLayoutWidget):
     def show_view(self, view: BrakingView | None, marks: Sequence[Mark] = ()) -> None:
         """Draw a braking, from its beginning to its end."""
         self._view, self._marks = view, marks
-        self._build()
+        self.ci.setVisible(view is not None)
+        if view is None:  # the rows are kept for the next braking
+            return
+        if list(self._rows) == self._names_that_fit():
+            self._fill()
+        else:
+            self._build()
         self.show_all()
 
     def available(self) -> list[str]:
@@ -132,8 +104,7 @@ class TimeRows(pg.GraphicsLayoutWidget):
             return
         self.set_span(0.0, max(float(self._view.summary.get("duration_s") or 1.0), 0.1))
         for row in self._rows.values():
-            if row.name != SPECTROGRAM:
-                row.item.enableAutoRange(axis="y")
+            row.show_all_values()
 
     def show_event(self, start_s: float, end_s: float) -> None:
         """Show an event with a second around it."""
@@ -156,37 +127,48 @@ class TimeRows(pg.GraphicsLayoutWidget):
 
     # -- making -------------------------------------------------------------------------------------
 
-    def _first(self) -> _Row | None:
+    def _first(self) -> Row | None:
         return next(iter(self._rows.values()), None)
 
     def _build(self) -> None:
+        """Make the rows; kept as long as their names and the look are the same."""
         self.ci.clear()
         self._rows = {}
-        view = self._view
-        if view is None:
-            return
         names = self._names_that_fit()
         layout: Any = self.ci.layout
         layout.setVerticalSpacing(self._theme.px(0.25))
         layout.setContentsMargins(*[self._theme.px(0.5)] * 4)
         layout.setHorizontalSpacing(0)
         layout.setColumnFixedWidth(0, self._theme.px(8.5))
+        time_name = self.tr("Time since the first sample [s]")
+        first: Row | None = None
         for number, name in enumerate(names):
             axis = FewTicks(self._theme)
             item: Any = self.ci.addPlot(row=number, col=1, enableMenu=False, axisItems={"left": axis})
-            row = self._rows[name] = self._dress(item, name, last=number == len(names) - 1)
+            row = Row(self._theme, item, name, time_name if number == len(names) - 1 else "")
             self.ci.addItem(row.title, row=number, col=0)
-        first = self._first()
-        for name, row in self._rows.items():
-            if first is not None and row is not first:
-                row.item.setXLink(first.item)
-            if name == SPECTROGRAM and view.picture is not None:
-                self._draw_picture(row, view.picture, view.summary)
-            elif name in view.curves:
-                self._draw_curve(row, view.curves[name])
-            self._draw_marks(row)
-            self._say(row, None)
+            self._rows[name] = row
+            first = first or row
+            if row is not first:
+                item.setXLink(first.item)
+        self._fill()
         self._share_height()
+
+    def _fill(self) -> None:
+        """Put the present braking into the rows."""
+        view = self._view
+        for name, row in self._rows.items():
+            row.empty()
+            if view is None:
+                continue
+            if name == SPECTROGRAM and view.picture is not None:
+                row.show_picture(view.picture, view.summary["events"])
+            elif name in view.curves:
+                row.show_curve(view.curves[name])
+            row.show_marks(self._marks)
+            row.show_all_values()
+            self._say(row, None)
+        self.set_play(self._play_s)
 
     def _names_that_fit(self) -> list[str]:
         """Rows that are switched on, as far as they are not too low to be read."""
@@ -223,100 +205,6 @@ class TimeRows(pg.GraphicsLayoutWidget):
         else:
             self._rebuild()
 
-    def _dress(self, item: Any, name: str, last: bool) -> _Row:
-        t, row = self._theme.current, _Row(item, name)
-        item.hideButtons()
-        item.setMouseEnabled(x=True, y=False)
-        item.setClipToView(True)
-        item.setDownsampling(auto=True, mode="peak")
-        for side in ("left", "bottom"):
-            axis = item.getAxis(side)
-            axis.enableAutoSIPrefix(False)
-            axis.setPen(pg.mkPen(t.plot_line))
-            axis.setTextPen(pg.mkPen(t.text))
-            axis.setTickFont(self._theme.font("small"))
-        item.getAxis("left").setWidth(self._theme.px(5.5))
-        item.getAxis("bottom").setStyle(showValues=last)
-        if last:
-            item.getAxis("bottom").label.setFont(self._theme.font("small"))
-            item.setLabel("bottom", self.tr("Time since the first sample [s]"), color=t.text)
-            item.getAxis("bottom").setHeight(self._theme.px(4.5))
-        else:
-            item.getAxis("bottom").setHeight(self._theme.px(0.5))
-        row.cursor.setPen(pg.mkPen(t.blue, width=1))
-        row.cursor.hide()
-        row.play.setPen(pg.mkPen(t.text, width=2))
-        row.play.setVisible(self._play_s is not None)
-        for line in (row.cursor, row.play):
-            line.setZValue(20)
-            item.addItem(line, ignoreBounds=True)
-        return row
-
-    def _draw_curve(self, row: _Row, curve: Curve) -> None:
-        colour = self._theme.current.series.get(curve.name, self._theme.current.sound)
-        row.curve = row.item.plot(
-            curve.time_s(),
-            curve.values,
-            pen=pg.mkPen(colour),
-            connect="finite",
-            skipFiniteCheck=curve.name != MU,
-        )
-        if curve.name == MU:
-            row.item.setLimits(yMin=-0.2, yMax=2.0)
-
-    def _draw_picture(self, row: _Row, picture: SoundPicture, summary: dict[str, Any]) -> None:
-        levels = picture.level_db
-        peak = float(levels.max())
-        image = pg.ImageItem(levels.T, axisOrder="row-major")
-        image.setColorMap("viridis")
-        image.setLevels((peak - _RANGE_DB, peak))
-        image.setRect(
-            QRectF(
-                picture.t0_s - picture.dt_s / 2,
-                -picture.line_hz / 2e3,
-                picture.dt_s * levels.shape[0],
-                picture.line_hz * levels.shape[1] / 1e3,
-            )
-        )
-        row.image = image
-        row.item.addItem(image)
-        row.item.setMouseEnabled(x=True, y=False)
-        frequencies = [f for f in summary["events"].get("frequency_hz", ()) if f]
-        nyquist_khz = picture.line_hz * (levels.shape[1] - 1) / 1e3
-        top_khz = min(nyquist_khz, max(8.0, 1.6 * max(frequencies, default=0.0) / 1e3))
-        row.item.setYRange(0.0, top_khz, padding=0)
-        self._draw_events(row, summary["events"])
-
-    def _draw_events(self, row: _Row, events: dict[str, list[Any]]) -> None:
-        for number, frequency in enumerate(events.get("frequency_hz", ())):
-            start, length = (events[name][number] for name in ("start_s", "duration_s"))
-            if start is None or length is None:
-                continue
-            harmonic = (events.get("harmonic_of") or [-1] * (number + 1))[number] not in (None, -1)
-            f_khz = frequency / 1e3
-            pen = pg.mkPen(
-                "#ffffff", width=1, style=Qt.PenStyle.DotLine if harmonic else Qt.PenStyle.DashLine
-            )
-            box = pg.PlotCurveItem(
-                np.array([0.0, length, length, 0.0, 0.0]) + start,
-                f_khz + np.array([-1, -1, 1, 1, -1]) * 0.2,
-                pen=pen,
-            )
-            row.item.addItem(box, ignoreBounds=True)
-            if not harmonic:
-                words = f"{frequency:.0f} Hz  {number_text(events['level_db'][number], 0)} dB"
-                label = pg.TextItem(words, color="#ffffff", anchor=(0, 1), fill=pg.mkBrush(0, 0, 0, 130))
-                label.setFont(self._theme.font("small"))
-                label.setPos(start, f_khz + 0.25)
-                row.item.addItem(label, ignoreBounds=True)
-
-    def _draw_marks(self, row: _Row) -> None:
-        colour = "#ffffff" if row.name == SPECTROGRAM else self._theme.current.plot_line
-        for mark in self._marks:
-            line = pg.InfiniteLine(mark.time_s, angle=90, pen=pg.mkPen(colour, style=Qt.PenStyle.DotLine))
-            line.setToolTip(mark.words)
-            row.item.addItem(line, ignoreBounds=True)
-
     # -- reading ------------------------------------------------------------------------------------
 
     def values_at(self, time_s: float) -> dict[str, float]:
@@ -330,22 +218,16 @@ class TimeRows(pg.GraphicsLayoutWidget):
                 found[name] = float(curve.values[place])
         return found
 
-    def _say(self, row: _Row, values: dict[str, float] | None) -> None:
+    def _say(self, row: Row, values: dict[str, float] | None) -> None:
         """Name and unit beside the row; with a cursor the value before the unit."""
         name, unit = self.titles.get(row.name, (row.name, ""))
         second = unit
         if values is not None and row.name in values:
             number = number_text(values[row.name], DECIMALS.get(row.name, 2))
             second = f"<b>{number}</b> {unit}"
-        self._write(row, name, second)
+        row.write(name, second)
 
-    def _write(self, row: _Row, first: str, second: str) -> None:
-        t = self._theme.current
-        words = f"<span style='color:{t.muted}'>{first}</span><br>"
-        words += f"<span style='color:{t.text}'>{second or '&nbsp;'}</span>"
-        row.title.setText(words, size=f"{self._theme.font('small').pointSizeF():.1f}pt")
-
-    def _row_at(self, place: Any) -> tuple[_Row, float, float] | None:
+    def _row_at(self, place: Any) -> tuple[Row, float, float] | None:
         for row in self._rows.values():
             if row.item.vb.sceneBoundingRect().contains(place):
                 point = row.item.vb.mapSceneToView(place)
@@ -371,7 +253,7 @@ class TimeRows(pg.GraphicsLayoutWidget):
         if spectrogram is not None and time_s is not None and f_khz is not None and self._view is not None:
             level = _level_at(self._view.picture, time_s, f_khz * 1e3)
             if level is not None:
-                self._write(spectrogram, f"{f_khz * 1e3:.0f} Hz", f"<b>{level:.0f}</b> dB")
+                spectrogram.write(f"{f_khz * 1e3:.0f} Hz", f"<b>{level:.0f}</b> dB")
         self.timePointed.emit(float("nan") if time_s is None else time_s)
 
     def leaveEvent(self, event: Any) -> None:
