@@ -13,6 +13,8 @@ from PySide6.QtCore import QCoreApplication, QPoint, QSize, QStandardPaths, Qt
 from PySide6.QtGui import QGuiApplication, QImage, QPainter
 from PySide6.QtWidgets import QFileDialog, QWidget
 
+from rigctl.gui.live.plot import LivePlot
+
 SHARPNESS = 2.0
 """Pixels of a saved PNG per pixel of the screen."""
 
@@ -30,9 +32,20 @@ def save_picture(widget: QWidget, path: Path) -> None:
     OSError
         It cannot be written there.
     """
-    if path.suffix.lower() == ".svg":
-        _save_svg(widget, path)
-        return
+    plots = [widget] if isinstance(widget, LivePlot) else widget.findChildren(LivePlot)
+    for plot in plots:
+        plot.draw_finer(SHARPNESS)
+    try:
+        if path.suffix.lower() == ".svg":
+            _save_svg(widget, path)
+        else:
+            _save_png(widget, path)
+    finally:
+        for plot in plots:
+            plot.draw_finer(1.0)
+
+
+def _save_png(widget: QWidget, path: Path) -> None:
     image = QImage(widget.size() * SHARPNESS, QImage.Format.Format_RGB32)
     image.setDevicePixelRatio(SHARPNESS)
     image.fill(widget.palette().window().color())

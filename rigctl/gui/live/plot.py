@@ -95,6 +95,7 @@ class LivePlot(QWidget):
         self.data: LiveData | None = None
         self._manual_y: tuple[float, float] | None = None
         self._value_at = 0.0
+        self._detail = 1.0
         self._hover: tuple[float, float] | None = None
         self.x_axis = x_axis or RigTimeAxis("bottom", theme)
         self.y_axis = y_axis or PlainAxis("left", theme)
@@ -207,8 +208,14 @@ class LivePlot(QWidget):
         return ""
 
     def pixels(self) -> int:
-        """Width of the drawing area."""
-        return max(int(self.view.width()), 1)
+        """Width of the drawing area in the screen's own pixels."""
+        return max(int(self.view.width() * self.graphics.devicePixelRatioF() * self._detail), 1)
+
+    def draw_finer(self, detail: float) -> None:
+        """Draw for a picture with so many times the screen's pixels; 1 again for the screen."""
+        self._detail = detail
+        if self.data is not None:
+            self.draw(self.data)
 
     def set_ranges(self, x: tuple[float, float], y: tuple[float, float], *, room: bool = True) -> None:
         """Show this; a vertical range chosen by a person comes first. `room`: for the outermost numbers."""

@@ -153,6 +153,7 @@ class SpectrumPlot(LivePlot):
         wanted = [point for point in points if not point[2].harmonic and x[0] <= point[0] <= x[1]]
         per_pixel = [(high - low) / max(size, 1.0) for (low, high), size in zip(
             self.view.viewRange(), (self.view.width(), self.view.height()), strict=True)]  # fmt: skip
+        wanted = sorted(wanted[:_MARKS], key=lambda point: point[0])
         placed: list[tuple[float, float]] = []
         for number, label in enumerate(self._labels):
             label.setVisible(number < len(wanted))
@@ -161,13 +162,16 @@ class SpectrumPlot(LivePlot):
             frequency_hz, level, _ = wanted[number]
             label.setText(f"{frequency_text(frequency_hz)}  {quantity_text(level, 'dB', 0)}")
             size = label.boundingRect().size()
-            wide, tall = size.width() * per_pixel[0], 1.05 * size.height() * per_pixel[1]
+            wide, tall = 1.03 * size.width() * per_pixel[0], 1.05 * size.height() * per_pixel[1]
             at_db = min(level + _ABOVE_DB, LEVELS_DB[1] - 1.3 * tall)
-            while any(abs(f - frequency_hz) < wide and abs(db - at_db) < tall for f, db in placed):
-                at_db -= tall
-            placed.append((frequency_hz, at_db))
-            inside = min(max(frequency_hz, x[0] + wide / 2), x[1] - wide / 2)
-            label.setPos(inside, at_db)
+            at_hz = min(max(frequency_hz, x[0] + wide / 2), x[1] - wide / 2)
+            beside = [hz for hz, db in placed if abs(db - at_db) < tall and at_hz - hz < wide]
+            if beside:
+                at_hz = max(beside) + wide
+            if at_hz > x[1] - wide / 2:  # no room to the right: below
+                at_hz, at_db = x[1] - wide / 2, at_db - tall * len(beside)
+            placed.append((at_hz, at_db))
+            label.setPos(at_hz, at_db)
 
     def value_text(self, data: LiveData) -> str:
         """The loudest event at the shown moment."""
