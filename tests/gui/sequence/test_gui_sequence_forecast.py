@@ -91,7 +91,9 @@ def test_readiness_in_words() -> None:
     running = replace(idle, mode="program", word=Word.RUNNING)
     assert "running" in why_not(draft, [], result, RIG, running)
     assert "being started" in why_not(draft, [], result, RIG, replace(idle, word=Word.STARTING))
-    assert why_not(draft, [], result, RIG, replace(idle, mode="program", word=Word.LOCKED)) == ""
+    manual = replace(idle, mode="manual", word=Word.READY)
+    assert "manual session" in why_not(draft, [], result, RIG, manual)
+    assert why_not(draft, [], result, RIG, replace(idle, mode="program", word=Word.TRIPPED)) == ""
     sequence = draft.form.sequences[0]
     draft.set_sequence(replace(sequence, repeat="x"), "repeat")
     reason = why_not(draft, list(draft.faults), result, RIG, idle)

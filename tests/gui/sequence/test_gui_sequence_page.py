@@ -91,6 +91,22 @@ def test_a_new_matrix_can_be_started_at_once_and_is_unsaved(page, qtbot, started
     assert len(page.unsaved()) == 1  # the copy is not the program's file
 
 
+def test_a_refused_start_is_told_here(page, qtbot, tmp_path, monkeypatch) -> None:
+    opened(page, qtbot, copied(tmp_path, "quick_check"))
+    settled(page, qtbot)
+    rig = page.services.rig
+    monkeypatch.setattr(
+        rig, "start_program", lambda *a, **how: rig.refused.emit("A session is running already.")
+    )
+    page.start.button.click()
+    page.start.go.click()
+    assert "running already" in page.notice.words.text()
+    assert page.services.shown == []
+    page.notice.close_notice()
+    rig.refused.emit("something else")
+    assert page.notice.isHidden()
+
+
 def test_a_saved_program_is_started_from_its_file(page, qtbot, started, tmp_path) -> None:
     path = copied(tmp_path, "quick_check")
     opened(page, qtbot, path)

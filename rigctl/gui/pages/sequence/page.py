@@ -365,8 +365,14 @@ class SequencePage(Page):
         )  # fmt: skip
 
     def _run(self, program: Path, rig: Path, choice: StartChoice) -> None:
+        refusals: list[str] = []
+        connection = self.services.rig.refused.connect(refusals.append)
         self.services.rig.start_program(program, rig, time=choice.time, seed=choice.seed)
-        self.services.navigate("run")
+        self.disconnect(connection)
+        if refusals:
+            self.notice.ask(refusals[0], [(self.tr("Close"), None)])
+        else:
+            self.services.navigate("run")
 
     # -- show ---------------------------------------------------------------------------------------
 

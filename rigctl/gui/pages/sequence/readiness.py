@@ -15,7 +15,8 @@ from rigctl.gui.pages.sequence.forecast import Forecast
 from rigctl.gui.pages.sequence.words import brakings_text, long_time_text, place_name
 from rigctl.gui.rig.state import RigState, Word
 
-_BUSY = (Word.RUNNING, Word.PAUSED, Word.STOPPING)
+_FREE = (Word.OFFLINE, Word.TRIPPED)
+"""Words with which a session can be begun; the connection refuses if a tripped one still lives."""
 
 
 def why_not(
@@ -38,9 +39,17 @@ def why_not(
         why = QCoreApplication.translate("sequence", "Checking every set-point against the rig …")
     elif state.word is Word.STARTING:
         why = QCoreApplication.translate("sequence", "A session is being started.")
-    elif state.mode == "program" and state.word in _BUSY:
-        why = QCoreApplication.translate("sequence", "A program is running; see the run page.")
+    elif state.word not in _FREE:
+        why = _session_text(state.mode)
     return why
+
+
+def _session_text(mode: str) -> str:
+    if mode == "program":
+        return QCoreApplication.translate("sequence", "A program is running; see the run page.")
+    return QCoreApplication.translate(
+        "sequence", "A manual session is open; end it on the manual page first."
+    )
 
 
 def _errors_text(draft: ProgramDraft, errors: list[Fault]) -> str:
