@@ -299,7 +299,11 @@ def test_a_trip_names_cause_and_remedy_and_wants_a_reason(manual, rig, qtbot):
     assert edit.isVisible() and edit.text() == "valve opened"
     qtbot.keyClick(edit, Qt.Key.Key_Return)
     assert rig.asked == [("reset", ("valve opened",), {})]
+    rig.refused.emit("A door is open. Close it; then reset.")
+    refused = find(manual, "manual-refused", QLabel)
+    assert refused.isVisible() and "A door is open" in refused.text()
     rig.say(LOCKED)
+    assert not refused.isVisible()
     assert find(manual, "enable").isVisible() and not find(manual, "reset").isVisible()
 
 

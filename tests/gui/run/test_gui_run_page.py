@@ -256,6 +256,14 @@ def test_verbs_that_do_not_apply_say_why(run, rig):
     assert find(run, "verb-resume").isEnabled() and not find(run, "verb-pause").isEnabled()
 
 
+def test_a_refusal_stands_beside_the_verbs_until_something_changes(run, rig):
+    rig.refused.emit("A program is running.")
+    refused = find(run, "verb-refused", QLabel)
+    assert refused.isVisible() and "A program is running" in refused.text()
+    rig.say(replace(RUNNING, word=Word.PAUSED))
+    assert not refused.isVisible()
+
+
 def test_a_hold_is_shown_and_can_be_taken_back(run, rig, qtbot):
     tell(rig, record("verb", verb="hold", braking=1))
     assert "Will hold" in find(run, "verb-hold").text()

@@ -235,6 +235,7 @@ class ManualPage(Page):
 
     def _on_refused(self, why: str) -> None:
         self.model.refused()
+        self.controls.safety.setRefusal(why)
         if self.panel.busy and self.model.scene is not Scene.MANUAL:
             self.panel.setBusy(False)
             self.panel.setError(why)

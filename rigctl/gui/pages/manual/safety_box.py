@@ -33,6 +33,12 @@ class SafetyBox(QWidget):
         self.text = QLabel()
         self.text.setObjectName("manual-remedy")
         self.text.setWordWrap(True)
+        self.refusal = QLabel()
+        self.refusal.setObjectName("manual-refused")
+        self.refusal.setProperty("look", "error")
+        self.refusal.setWordWrap(True)
+        self.refusal.hide()
+        self._notice = Notice("")
         self.take = self._button("take-command", self.tr("&Take command"))
         self.take.setToolTip(self.tr("Command from this window; whoever commands now is told"))
         self.reset = self._button("reset", self.tr("Res&et…"))
@@ -77,7 +83,7 @@ class SafetyBox(QWidget):
         self._row.addWidget(self.end)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.title, self.text):
+        for widget in (self.title, self.text, self.refusal):
             self._column.addWidget(widget)
         self._column.addLayout(self._row)
         self._column.addWidget(self.confirm)
@@ -93,7 +99,10 @@ class SafetyBox(QWidget):
     def show_model(self) -> None:
         """Take on what the model says now."""
         notice = self._model.notice()
-        self._show_notice(notice)
+        if notice != self._notice:
+            self._notice = notice
+            self._show_notice(notice)
+            self.setRefusal("")
         for button, action in (
             (self.enable, Action.ENABLE),
             (self.disable, Action.DISABLE),
@@ -109,6 +118,11 @@ class SafetyBox(QWidget):
         if not self._model.may(Action.RESET).allowed:
             self.reason.cancel()
         self._arrange()
+
+    def setRefusal(self, why: str) -> None:
+        """What the controller has refused, and why; "" for nothing. It goes when the rig's state changes."""
+        self.refusal.setText("▲ " + why if why else "")
+        self.refusal.setVisible(bool(why))
 
     def _show_notice(self, notice: Notice) -> None:
         mark = "▲ " if notice.look else ""

@@ -282,6 +282,7 @@ class RunPage(Page):
             self.start.setNews("▲ " + why, "error")
         else:
             self.result.setNews(why)
+            self.verbs.setRefusal(why)
 
     # -- news -------------------------------------------------------------------------------------
 

@@ -34,23 +34,7 @@ class VerbRow(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self._theme = theme
         self._told: tuple[object, ...] = ()
-        names = {
-            Verb.PAUSE: self.tr("&Pause now"),
-            Verb.HOLD: self.tr("&Hold after this"),
-            Verb.RESUME: self.tr("&Go on"),
-            Verb.SKIP: self.tr("S&kip"),
-            Verb.REPEAT: self.tr("R&epeat"),
-            Verb.STOP: self.tr("&Abort…"),
-        }
-        self.buttons: dict[Verb, QPushButton] = {}
-        self._verbs = QWidget()
-        self._row = QHBoxLayout(self._verbs)
-        for verb in VERBS:
-            button = QPushButton(names[verb])
-            button.setObjectName(f"verb-{verb.value}")
-            button.clicked.connect(partial(self._on_verb, verb))
-            self._row.addWidget(button)
-            self.buttons[verb] = button
+        self._make_buttons()
         self.take = QPushButton(self.tr("&Take command"))
         self.take.setObjectName("run-take-command")
         self.take.setToolTip(self.tr("Command from this window; whoever commands now is told"))
@@ -71,12 +55,18 @@ class VerbRow(QWidget):
         self._grid.addWidget(self._verbs, 0, 0)
         self._grid.addWidget(self._marks, 0, 1)
         self._side_by_side = True
+        self.refusal = QLabel()
+        self.refusal.setObjectName("verb-refused")
+        self.refusal.setProperty("look", "error")
+        self.refusal.setWordWrap(True)
+        self.refusal.hide()
         self.confirm = InlineConfirm(theme, "abort-confirm", self.tr("Abort the run"))
         self.confirm.yes.setToolTip(consequence(Verb.STOP))
         self.note_line = AskLine(theme, "note-line", self.tr("Write"))
         self.note_line.done.setToolTip(self.tr("Put it into the journal (Enter)"))
         self._column = QVBoxLayout(self)
         self._column.addLayout(self._grid)
+        self._column.addWidget(self.refusal)
         self._column.addWidget(self.confirm)
         self._column.addWidget(self.note_line)
         self.rating.valueChanged.connect(self.rated)
@@ -85,6 +75,25 @@ class VerbRow(QWidget):
         self.confirm.confirmed.connect(partial(self.asked.emit, Verb.STOP))
         theme.changed.connect(self._restyle)
         self._restyle()
+
+    def _make_buttons(self) -> None:
+        names = {
+            Verb.PAUSE: self.tr("&Pause now"),
+            Verb.HOLD: self.tr("&Hold after this"),
+            Verb.RESUME: self.tr("&Go on"),
+            Verb.SKIP: self.tr("S&kip"),
+            Verb.REPEAT: self.tr("R&epeat"),
+            Verb.STOP: self.tr("&Abort…"),
+        }
+        self.buttons: dict[Verb, QPushButton] = {}
+        self._verbs = QWidget()
+        self._row = QHBoxLayout(self._verbs)
+        for verb in VERBS:
+            button = QPushButton(names[verb])
+            button.setObjectName(f"verb-{verb.value}")
+            button.clicked.connect(partial(self._on_verb, verb))
+            self._row.addWidget(button)
+            self.buttons[verb] = button
 
     def _restyle(self) -> None:
         self._column.setContentsMargins(*(self._theme.px(1),) * 4)
@@ -124,6 +133,7 @@ class VerbRow(QWidget):
         if told == self._told:
             return
         self._told = told
+        self.setRefusal("")
         program = state.mode == "program"
         for verb, button in self.buttons.items():
             permission = may(verb, state, hold_asked)
@@ -135,6 +145,11 @@ class VerbRow(QWidget):
         self.take.setVisible(not state.commanding)
         if not may(Verb.STOP, state, hold_asked).allowed:
             self.confirm.cancel()
+
+    def setRefusal(self, why: str) -> None:
+        """What the controller has refused, and why; "" for nothing. It goes when the run's state changes."""
+        self.refusal.setText("▲ " + why if why else "")
+        self.refusal.setVisible(bool(why))
 
     def open_note(self) -> None:
         """Show the note line."""
