@@ -69,7 +69,9 @@ def shared_work(qapp, made: Path) -> Iterator[Work]:
     for _ in range(2):
         work.in_thread(lambda reporter: gate.wait(20), done=ready.append)
     gate.set()
-    work.in_process(remote.view, made / "brakings" / "00002.h5", done=ready.append, failed=ready.append)
+    work.in_process(
+        remote.view, made / "brakings" / "00002.h5", done=ready.append, failed=ready.append, lane=remote.LANE
+    )
     while len(ready) < 3:
         qapp.processEvents()
     yield work

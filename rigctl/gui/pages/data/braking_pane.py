@@ -141,8 +141,9 @@ class BrakingPane(QWidget):
         self.sound.show_braking(None, "", None)
         self._said = said
         self._job = self._services.work.in_process(
-            remote.view, path, done=partial(self._on_view, path), failed=partial(self._on_failed, path)
-        )
+            remote.view, path, done=partial(self._on_view, path), failed=partial(self._on_failed, path),
+            lane=remote.LANE,
+        )  # fmt: skip
 
     @property
     def busy(self) -> bool:

@@ -141,8 +141,9 @@ class ComparePane(QWidget):
                 continue
             item = _Compared(entry, path, campaign.name)
             item.job = self._services.work.in_process(
-                remote.overlay, path, done=partial(self._on_view, item), failed=partial(self._on_failed, item)
-            )
+                remote.overlay, path, done=partial(self._on_view, item),
+                failed=partial(self._on_failed, item), lane=remote.LANE,
+            )  # fmt: skip
             self._set.append(item)
         surplus = self._set[: max(len(self._set) - MOST, 0)]
         self._drop(surplus)

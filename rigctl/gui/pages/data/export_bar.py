@@ -184,6 +184,7 @@ class ExportBar(QWidget):
         self._job = self._services.work.in_process(
             remote.export, entry.path(self._campaign), Path(self.folder.text()).expanduser(),
             self.chosen_formats(), f"{self._campaign.name}-", done=self._on_written, failed=self._on_failed,
+            lane=remote.LANE,
         )  # fmt: skip
         self._check()
 

@@ -148,7 +148,7 @@ class CampaignLoader(QObject):
         piece, self._waiting = self._waiting[:PIECE], self._waiting[PIECE:]
         done = partial(self._on_piece, self.campaign, piece)
         self._piece = self._work.in_process(
-            remote.read_files, self.campaign, piece, done=done, failed=self._on_failed
+            remote.read_files, self.campaign, piece, done=done, failed=self._on_failed, lane=remote.LANE
         )
 
     def _on_piece(self, campaign: Path, piece: list[str], found: Found) -> None:

@@ -325,6 +325,7 @@ class DataPage(Page):
         settings.setValue("export-folder", self.export.folder.text())
         settings.setValue("campaign", str(self.loader.campaign or ""))
         self.table.save(settings)
+        self.reports.cancel()
 
     def restore_layout(self, settings: QSettings) -> None:
         """As saved; what has gone since is passed over."""

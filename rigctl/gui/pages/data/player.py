@@ -70,7 +70,13 @@ class Player(QObject):
 
     def _prepare(self, path: Path, equal_loudness: bool, rate_hz: float) -> None:
         self._job = self._work.in_process(
-            remote.sound, path, equal_loudness, rate_hz, done=self._open, failed=self._on_failed
+            remote.sound,
+            path,
+            equal_loudness,
+            rate_hz,
+            done=self._open,
+            failed=self._on_failed,
+            lane=remote.LANE,
         )
 
     def _open(self, sound: Listenable) -> None:

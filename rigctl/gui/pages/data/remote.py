@@ -12,6 +12,9 @@ from rigctl.analysis.braking_view import BrakingView, Listenable
 from rigctl.export.braking import Format
 from rigctl.recording.catalogue import Catalogue, Found
 
+LANE = "data"
+"""Worker of the data page: opening a braking does not wait for a study of the model."""
+
 
 def read_files(campaign: Path, names: list[str]) -> Found:
     """Summaries of these files, remembered in the catalogue."""

@@ -41,6 +41,12 @@ class ReportBuilder(QObject):
             self._job = self._work.in_thread(build, campaign, done=self._on_done, failed=self._on_failed)
             self.started.emit()
 
+    def cancel(self) -> None:
+        """The report is not wanted any more: its process ends."""
+        if self._job is not None:
+            self._job.cancel()
+            self._job = None
+
     def _on_done(self, path: Path) -> None:
         self._job = None
         self.finished.emit(path)

@@ -133,6 +133,7 @@ class SoundBar(QWidget):
             remote.save_wav, source, target,
             done=lambda path: self._services.notify(self.tr("Saved as {0}").format(path)),
             failed=self._services.notify,
+            lane=remote.LANE,
         )  # fmt: skip
 
     def _say(self, words: str) -> None:
