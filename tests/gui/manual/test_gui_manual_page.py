@@ -357,6 +357,14 @@ def test_readouts_show_readings_set_points_and_limits(manual, rig):
     assert "87.2" in manual.readouts.level.text()
 
 
+def test_trends_have_no_hole_when_another_page_was_shown(manual, rig):
+    manual.deactivated()
+    manual.hide()
+    for second in range(100, 110):
+        rig.say(replace(MANUAL, rig_s=float(second)))
+    assert len(manual.readouts.bars["speed"].trend.points()) == 10
+
+
 def test_the_end_of_a_session_leads_back_and_says_why(manual, rig):
     rig.say(replace(MANUAL, word=Word.OFFLINE, mode=""))
     rig.detached.emit("the controller has gone.")

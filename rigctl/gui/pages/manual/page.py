@@ -63,7 +63,7 @@ class ManualPage(Page):
         session = services.rig.session
         if session is not None:
             self._on_attached(session)
-        self.model.show(services.rig.state)
+        self._on_state(services.rig.state)
         self._show_scene()
 
     # -- building ---------------------------------------------------------------------------------
@@ -245,6 +245,7 @@ class ManualPage(Page):
         self.model.show(state)
         if state.recording and not was_recording:
             self.record.rating.setValue(0)
+        self.readouts.show_state(state)  # unseen, too: the trends shall have no hole
         if self.isVisible() or self.model.scene is Scene.NO_SESSION:
             self._show_scene()
 
@@ -264,7 +265,6 @@ class ManualPage(Page):
             if not self._arranged:
                 self._arranged = True
                 QTimer.singleShot(0, self, self._arrange)
-        self.readouts.show_state(state)
         self.middle.setCurrentIndex(0 if scene is Scene.MANUAL else 1)
         self.record.setVisible(scene is Scene.MANUAL)
         self._release_key.setEnabled(self.model.may(Action.RELEASE).allowed)
