@@ -172,6 +172,7 @@ def test_warnings_are_warnings() -> None:
     assert {fault.severity for fault in faults} == {"warning"}
     assert faults[0].place == "conditioning.timeout_s"
     assert "time-out" in faults[0].remedy
+    assert faults[0].words.startswith("20 s: conditioning is expected")
 
 
 def test_more_values_than_named_mark_the_list_as_a_whole() -> None:

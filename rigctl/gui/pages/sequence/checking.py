@@ -315,7 +315,8 @@ def rig_faults(result: CheckResult, form: ProgramForm) -> tuple[Fault, ...]:
 
 
 def _rig_fault(problem: Problem, form: SequenceForm) -> Fault:
-    words = f"{problem.value} {problem.problem}"
+    goes_on = problem.problem.startswith(("is ", "are ", "of ", "cannot "))
+    words = f"{problem.value}{' ' if goes_on else ': '}{problem.problem}"
     if problem.count > 1:
         note = _tr("{0} brakings, the first is number {1}.").format(problem.count, problem.first_index)
     else:

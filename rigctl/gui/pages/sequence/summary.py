@@ -197,8 +197,13 @@ class FaultList(QWidget):
     def _restyle(self) -> None:
         self._column.setSpacing(self._theme.px(0.5))
         self.list.setFont(self._theme.font("small"))
-        self.list.setMinimumHeight(self._theme.px(8))
-        self.list.setMaximumHeight(self._theme.px(15))
+        self._fit()
+
+    def _fit(self) -> None:
+        """As high as its entries need, within bounds; more scroll."""
+        units = min(max(4 * self.list.count() + 1, 6), 15)
+        self.list.setMinimumHeight(self._theme.px(min(units, 8)))
+        self.list.setMaximumHeight(self._theme.px(units))
 
     def show_faults(self, faults: list[Fault], form: ProgramForm) -> None:
         """Errors first."""
@@ -222,6 +227,7 @@ class FaultList(QWidget):
             if fault.severity == "error":
                 item.setForeground(self._theme.colour("red"))
             self.list.addItem(item)
+        self._fit()
         self.setVisible(bool(faults))
 
     def _on_item(self, item: QListWidgetItem) -> None:
