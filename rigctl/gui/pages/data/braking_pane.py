@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QLabel, QMenu, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
@@ -157,7 +157,12 @@ class BrakingPane(QWidget):
     def set_wide(self, wide: bool) -> None:
         """Tables beside the plots instead of below them."""
         self.split.setOrientation(Qt.Orientation.Horizontal if wide else Qt.Orientation.Vertical)
-        self.split.setSizes([200, 100] if wide else [210, 90])  # shares
+        QTimer.singleShot(0, self, self._share_room)  # when the pane has its new size
+
+    def _share_room(self) -> None:
+        """Two thirds for the plots."""
+        length = max(self.split.width(), self.split.height())
+        self.split.setSizes([2 * length // 3, length // 3])
 
     def _drop_job(self) -> None:
         if self._job is not None:
