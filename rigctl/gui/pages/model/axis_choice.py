@@ -65,6 +65,9 @@ class AxisChoice(QWidget):
         ends = OPERATING.get(axis.key, FACTORS)
         blockers = [QSignalBlocker(widget) for widget in (self.combo, self.low, self.high)]
         self.combo.setCurrentIndex(max(self.combo.findData(axis.key), 0))
+        edit = self.combo.lineEdit()
+        if edit is not None:
+            edit.setCursorPosition(0)
         for spin, value in ((self.low, axis.low), (self.high, axis.high)):
             span = ends[1] - ends[0]
             spin.setDecimals(3 if span < 1.0 else 2 if span < 10.0 else 1)

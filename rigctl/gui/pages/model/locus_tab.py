@@ -67,7 +67,7 @@ class LocusTab(QWidget):
         self.split.addWidget(left)
         self.split.addWidget(right)
         self.split.setStretchFactor(0, 1)
-        self.split.setSizes([self._theme.px(60), self._theme.px(46)])
+        self.split.setSizes([self._theme.px(56), self._theme.px(48)])
         self.split.setChildrenCollapsible(False)
         right.setSizes([self._theme.px(38), self._theme.px(40)])
         self._whole = QVBoxLayout(self)
@@ -109,6 +109,7 @@ class LocusTab(QWidget):
             self.table.show_poles(None)
             self.view.show_poles(None)
             self.path.clear()
+            self._say("")
 
     def _show_poles(self, poles: Poles) -> None:
         self.plot.show_poles(poles)
@@ -138,7 +139,7 @@ class LocusTab(QWidget):
     def _say(self, text: str) -> None:
         """What is under the mouse; else what is wrong, or what a person can do here."""
         selected = self._state.selected
-        if self._wrong:
+        if self._wrong or self._state.facts is None:
             text = self._wrong
         elif not text and selected is not None and not self.plot.sees(selected):
             text = self.tr("The selected mode lies outside the view. Press [To 5 kHz] or [All].")

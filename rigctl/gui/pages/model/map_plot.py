@@ -21,6 +21,8 @@ from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.plot_dress import dress
 
 _REACH = 1.5
+#: room of a label on a contour line, as shares of the axes
+_LABEL_ROOM = np.array([0.07, 0.05])
 #: least span of the colours, Hz: a single mode is not spread over the whole scale
 _LEAST_SPAN_HZ = 200.0
 
@@ -143,6 +145,8 @@ class MapPlot(pg.PlotWidget):
             self._item.removeItem(line)
         t = self._theme.current
         self._lines = []
+        labels: list[np.ndarray] = []
+        span = np.array([found.x.high - found.x.low, found.y.high - found.y.low])
         for level, segments in found.contours:
             for points in segments:
                 self._lines.append(
@@ -151,9 +155,13 @@ class MapPlot(pg.PlotWidget):
                     )
                 )
             longest = max(segments, key=len)
+            spot = longest[len(longest) // 2]
+            if any((np.abs(spot - other) < _LABEL_ROOM * span).all() for other in labels):
+                continue  # it would stand on another
+            labels.append(spot)
             text = pg.TextItem(f"{level:g}", color=t.panel, anchor=(0.5, 0.5))
             text.setFont(self._theme.font("small"))
-            text.setPos(*longest[len(longest) // 2])
+            text.setPos(*spot)
             self._lines.append(text)
         for x, y, _ in found.boundary:
             self._lines.append(pg.PlotCurveItem(x, y, pen=pg.mkPen(t.text, width=3), antialias=True))

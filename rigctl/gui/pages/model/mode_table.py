@@ -142,8 +142,8 @@ class ModeTable(QTableView):
         self.rows.restyle()
         metrics = QFontMetrics(self._theme.font("normal", bold=True))
         words = f"{UNSTABLE_MARK} {QCoreApplication.translate('model', 'unstable')}"
-        self.setColumnWidth(0, metrics.horizontalAdvance("00000"))
-        self.setColumnWidth(1, metrics.horizontalAdvance(words) + self._theme.px(2))
+        self.setColumnWidth(0, metrics.horizontalAdvance("0000"))
+        self.setColumnWidth(1, metrics.horizontalAdvance(words) + self._theme.px(1.5))
         self.setMinimumHeight(self._theme.px(16))
 
     def show_poles(self, poles: Poles | None) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QSettings, Qt
-from PySide6.QtWidgets import QSplitter, QTabWidget, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QScrollArea, QSplitter, QTabWidget, QVBoxLayout
 
 from rigctl.gui.pages.base import Page
 from rigctl.gui.pages.model.header import ModelHeader
@@ -40,7 +40,13 @@ class ModelPage(Page):
         self.tabs.addTab(self.ranking, self.tr("What h&elps"))
         self.tabs.currentChanged.connect(self._tab_changed)
         self.split = QSplitter(Qt.Orientation.Horizontal)
-        self.split.addWidget(self.sliders)
+        self.side = QScrollArea()
+        self.side.setWidgetResizable(True)
+        self.side.setFrameShape(QFrame.Shape.NoFrame)
+        self.side.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.side.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.side.setWidget(self.sliders)
+        self.split.addWidget(self.side)
         self.split.addWidget(self.tabs)
         self.split.setStretchFactor(1, 1)
         self.split.setChildrenCollapsible(False)
@@ -58,6 +64,8 @@ class ModelPage(Page):
     def _restyle(self) -> None:
         px = self.services.theme.px
         self.split.setHandleWidth(px(0.5))
+        bar = self.side.verticalScrollBar().sizeHint().width()
+        self.side.setMinimumWidth(self.sliders.minimumSizeHint().width() + bar)
         self.split.setSizes([px(38), px(100)])
 
     # -- page -------------------------------------------------------------------------------------

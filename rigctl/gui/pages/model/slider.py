@@ -8,16 +8,17 @@ from __future__ import annotations
 import math
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from rigctl.gui.theme import ThemeKeeper
+from rigctl.gui.widgets.elided import ElidedLabel
 
 #: positions of a logarithmic slider on each side of the factor 1
 _LOG_HALF = 200
 
 
 class KnobSlider(QWidget):
-    """Name and number above, slider and reset below."""
+    """Name and reset above, slider and number below."""
 
     valueChanged = Signal(float)
     """By a person: slider, keys or typing; not by `setValue`."""
@@ -31,8 +32,7 @@ class KnobSlider(QWidget):
         self._theme, self._ends, self._step, self._decimals = theme, ends, step, decimals
         self._log = logarithmic
         self._value = ends[0]
-        self.title = QLabel(title)
-        self.title.setWordWrap(True)
+        self.title = ElidedLabel(title)
         self.number = QDoubleSpinBox()
         self.number.setRange(*ends)
         self.number.setDecimals(decimals)
@@ -68,9 +68,9 @@ class KnobSlider(QWidget):
     def _arrange(self) -> None:
         self._top, self._bottom = QHBoxLayout(), QHBoxLayout()
         self._top.addWidget(self.title, 1)
-        self._top.addWidget(self.number)
+        self._top.addWidget(self.reset)
         self._bottom.addWidget(self.slider, 1)
-        self._bottom.addWidget(self.reset)
+        self._bottom.addWidget(self.number)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addLayout(self._top)
@@ -81,7 +81,7 @@ class KnobSlider(QWidget):
         for layout in (self._top, self._bottom):
             layout.setSpacing(px(1))
         self._column.setSpacing(px(0.5))
-        self.number.setMinimumWidth(px(14))
+        self.number.setMinimumWidth(px(12.5))
 
     def setTitle(self, title: str) -> None:
         """Another name."""

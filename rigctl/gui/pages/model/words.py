@@ -98,7 +98,7 @@ def onset_text(found: OnsetFound) -> str:
         text = text.format(value_text(found.over, found.value), frequency_text(found.frequency_hz))
     if found.over == PRESSURE:
         return text
-    return translate("model", "{0}, at any pressure because k = 0").format(text)
+    return translate("model", "{0}, at any pressure").format(text)
 
 
 def now_text(setting: Setting, poles: tuple[Pole, ...]) -> str:
