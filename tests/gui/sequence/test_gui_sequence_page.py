@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
-from PySide6.QtGui import QDropEvent
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDropEvent, QWheelEvent
 from PySide6.QtWidgets import QApplication, QFileDialog, QPushButton
 
 from rigctl.app.compose import read_program
@@ -358,6 +358,34 @@ def test_the_preview_follows_the_selected_sequence(page, qtbot, tmp_path) -> Non
     assert box.viewRange()[0] == pytest.approx([0.0, 0.5])
     page.preview.whole.click()
     assert box.viewRange()[0][1] > 1.0
+
+
+def test_mouse_over_the_course_reads_it_and_the_wheel_zooms_time_only(page, qtbot, tmp_path) -> None:
+    opened(page, qtbot, copied(tmp_path, "dialog_fig5"))
+    settled(page, qtbot)
+    view, box = page.preview.view, page.preview.plots["pressure"].getViewBox()
+    place = QPointF(view.width() * 0.6, view.height() * 0.2)
+    qtbot.mouseMove(view.viewport(), place.toPoint())
+    qtbot.mouseMove(view.viewport(), place.toPoint() + QPoint(2, 2))
+    qtbot.waitUntil(lambda: "bar" in page.preview.readout.text())
+    (left, right), y_range = box.viewRange()
+    wheel = QWheelEvent(
+        place,
+        view.viewport().mapToGlobal(place),
+        QPoint(0, 0),
+        QPoint(0, 120),
+        Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier,
+        Qt.ScrollPhase.NoScrollPhase,
+        False,
+    )
+    QApplication.sendEvent(view.viewport(), wheel)
+    qtbot.waitUntil(page.preview.whole.isVisible)
+    zoomed = box.viewRange()
+    assert left < zoomed[0][0] < zoomed[0][1] < right
+    assert zoomed[1] == y_range
+    page.preview.whole.click()
+    assert box.viewRange()[0] == pytest.approx([left, right])
 
 
 def test_a_running_program_hinders_another(page, qtbot, tmp_path) -> None:

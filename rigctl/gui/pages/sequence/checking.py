@@ -16,6 +16,7 @@ from typing import Any
 from pydantic import ValidationError
 from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
 
+from rigctl.gui.pages.sequence.check_words import check_said
 from rigctl.gui.pages.sequence.forms import ProgramForm, SequenceForm, mapping_of, profile_rows
 from rigctl.gui.pages.sequence.paste import parse_number
 from sequences.check import CheckResult, Problem
@@ -287,7 +288,7 @@ def _named(text: str) -> str:
 
 def _plain(text: str) -> str:
     """The text of a check as a sentence in the words of the page."""
-    return sentence(_named(text)) if text else ""
+    return sentence(_named(check_said(text))) if text else ""
 
 
 def _merged(faults: tuple[Fault, ...]) -> tuple[Fault, ...]:
@@ -322,8 +323,8 @@ def _rig_fault(problem: Problem, form: SequenceForm) -> Fault:
     else:
         note = _tr("Braking {0}.").format(problem.first_index)
     return Fault(
-        form.uid, _rig_place(problem.key), _named(words) + ".", _plain(problem.remedy), problem.severity,
-        _rig_cells(problem, form), note,
+        form.uid, _rig_place(problem.key), _named(check_said(words)) + ".", _plain(problem.remedy),
+        problem.severity, _rig_cells(problem, form), note,
     )  # fmt: skip
 
 

@@ -7,7 +7,6 @@ job: any of the parts.
 from __future__ import annotations
 
 import shutil
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -32,11 +31,10 @@ from rigctl.gui.pages.sequence.program_file import (
     OpenedProgram,
     ShippedProgram,
     rigs_in,
-    save_copy,
     shipped_programs,
 )
 from rigctl.gui.pages.sequence.readiness import start_words, why_not
-from rigctl.gui.pages.sequence.start_panel import StartChoice
+from rigctl.gui.pages.sequence.starter import Starter
 from rigctl.gui.pages.sequence.toolbar import ProgramBar
 from rigctl.gui.pages.sequence.workbench import Workbench
 from rigctl.gui.services import Services
@@ -67,6 +65,7 @@ class SequencePage(Page):
         self.empty = EmptyState(theme)
         self.forecaster = Forecaster(services.work, self)
         self.files = ProgramFiles(services, self.draft, self.notice, self)
+        self.starter = Starter(services, self.draft, self.files, self.notice)
         self._build()
         self._connect()
         self.setAcceptDrops(True)
@@ -109,7 +108,7 @@ class SequencePage(Page):
         self.editor.ordersAsked.connect(self.compare_orders)
         self.rig_choice.valueChanged.connect(self._on_rig)
         self.fault_list.chosen.connect(self.go_to)
-        self.start.started.connect(self._on_start)
+        self.start.started.connect(lambda choice: self.starter.start(choice, self.rig_choice.path))
         self.forecaster.ready.connect(self._on_forecast)
         self.forecaster.failed.connect(self._on_forecast_failed)
         self.services.rig.stateChanged.connect(lambda _state: self._show_start())
@@ -348,31 +347,6 @@ class SequencePage(Page):
         self.services.work.in_process(
             loop_orders, program, form.name.strip(), rig, done=done, failed=orders.show_text, lane=LANE
         )
-
-    # -- start --------------------------------------------------------------------------------------
-
-    def _on_start(self, choice: StartChoice) -> None:
-        program, rig = self.draft.program, self.rig_choice.path
-        if program is None or rig is None:
-            return
-        if self.files.path is not None and not self.draft.dirty:
-            self._run(self.files.path, rig, choice)
-            return
-        self.services.work.in_thread(
-            save_copy, program, self.services.data_folder / "programs", datetime.now(),
-            done=lambda saved: self._run(saved.path, rig, choice),
-            failed=lambda why: self.notice.ask(why, [(self.tr("Close"), None)]),
-        )  # fmt: skip
-
-    def _run(self, program: Path, rig: Path, choice: StartChoice) -> None:
-        refusals: list[str] = []
-        connection = self.services.rig.refused.connect(refusals.append)
-        self.services.rig.start_program(program, rig, time=choice.time, seed=choice.seed)
-        self.disconnect(connection)
-        if refusals:
-            self.notice.ask(refusals[0], [(self.tr("Close"), None)])
-        else:
-            self.services.navigate("run")
 
     # -- show ---------------------------------------------------------------------------------------
 
