@@ -31,7 +31,7 @@ DECIMALS = {LEVEL: 1, PRESSURE: 1, TORQUE: 0, SPEED: 1, DISC_TEMPERATURE: 0, MU:
 _TALL = 3
 _LEAST_FIRST = (SPEED, LEVEL, DISC_TEMPERATURE, TORQUE, MU, PRESSURE, MICROPHONE)
 """Rows that give way first where there is little room."""
-_LEAST_HEIGHT = 3.75
+_LEAST_HEIGHT = 4.25
 
 
 class TimeRows(pg.GraphicsLayoutWidget):
