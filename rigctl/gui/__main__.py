@@ -44,9 +44,9 @@ def main(arguments: list[str] | None = None) -> int:
     settings = window_settings(options.settings)
     translators = install_language(app, wanted_language(settings, options.language))
     theme = make_theme(app, settings, options.theme)
-    rig = RigConnection(options.data.resolve())
-    data: Path = options.data or Path(str(settings.value("data-folder", "")) or "data")
-    window = MainWindow(theme, settings, rig, data.resolve(), options.configs.resolve())
+    data: Path = (options.data or Path(str(settings.value("data-folder", "")) or "data")).resolve()
+    rig = RigConnection(data)
+    window = MainWindow(theme, settings, rig, data, options.configs.resolve())
     if options.page:
         window.navigate(options.page)
     window.show()

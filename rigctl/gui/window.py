@@ -78,7 +78,7 @@ class MainWindow(QMainWindow):
         return app
 
     def _build(self) -> None:
-        navigation = QWidget()
+        self._navigation = navigation = QWidget()
         column = QVBoxLayout(navigation)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -96,7 +96,8 @@ class MainWindow(QMainWindow):
             self._buttons[entry.page_id] = button
         column.addStretch(1)
         column.addWidget(self._look_buttons())
-        navigation.setFixedWidth(self._theme.px(17))
+        self._respace()
+        self._theme.changed.connect(self._respace)
         middle = QHBoxLayout()
         middle.setSpacing(0)
         middle.addWidget(navigation)
@@ -116,6 +117,9 @@ class MainWindow(QMainWindow):
             ("Ctrl+0", partial(self._zoom, 0.0)),
         ):
             QShortcut(QKeySequence(keys), self, action)
+
+    def _respace(self) -> None:
+        self._navigation.setFixedWidth(self._theme.px(17))
 
     def _look_buttons(self) -> QWidget:
         box = QWidget()

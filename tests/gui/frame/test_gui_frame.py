@@ -1,7 +1,10 @@
 """What is always visible, and what holds everywhere: state, cause, STOP, look, closing."""
 
+import os
+import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +12,7 @@ import pytest
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtWidgets import QApplication, QDialog, QMessageBox, QPushButton
 
+from rigctl.app.sessions import BASE_VARIABLE
 from rigctl.gui.format import bytes_text, frequency_text, number_text, quantity_text, time_text
 from rigctl.gui.frame.alarmbar import AlarmBar
 from rigctl.gui.frame.statebar import StateBar
@@ -238,6 +242,30 @@ def test_window_starts_without_the_heavy_libraries():
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert out.stdout.strip() == "[]"
+
+
+def listens_to(pid: int, number: signal.Signals) -> bool:
+    """True once a process has a handler for a signal; Python sets none for SIGTERM by itself."""
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    caught = int(next(line.split()[1] for line in lines if line.startswith("SigCgt")), 16)
+    return bool(caught >> (number - 1) & 1)
+
+
+def test_rigctl_gui_opens_attaches_to_nothing_and_ends_when_asked(tmp_path: Path):
+    """As a person starts it: no option but where settings are kept; SIGTERM closes it."""
+    environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen", BASE_VARIABLE: str(tmp_path)}
+    command = [sys.executable, "-m", "rigctl.app.cli", "gui", "--settings", str(tmp_path / "window.ini")]
+    window = subprocess.Popen(
+        command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    deadline = time.monotonic() + 60.0
+    while not listens_to(window.pid, signal.SIGTERM) and time.monotonic() < deadline:
+        assert window.poll() is None, window.communicate()[0]
+        time.sleep(0.05)
+    window.send_signal(signal.SIGTERM)
+    out, _ = window.communicate(timeout=60)
+    assert window.returncode == 0, out
+    assert "Traceback" not in out
 
 
 def test_no_window_is_left(qapp: QApplication):
