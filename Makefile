@@ -16,6 +16,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PROGRAM ?= configs/programs/squeal_matrix.toml
 RUN_ARGS ?=
+WORKERS ?= 3
 GUI_ARGS ?=
 
 help:
@@ -27,19 +28,26 @@ run: $(VENV)/.run
 gui: $(VENV)/.run
 	$(BIN)/rigctl gui $(GUI_ARGS)
 
-# Texts of the window: collected from the code, German in rigctl/gui/translations/rigctl_de.ts, then compiled.
+# Texts of the window: collected from the code, German in rigctl/gui/translations/rigctl_de.ts, then compiled. A running
+# window has mapped the compiled file: it is replaced, never written into.
+TEXTS := rigctl/gui/translations/rigctl_de
 translations: $(VENV)/.dev
 	$(BIN)/pyside6-lupdate -silent -no-obsolete -locations none \
-		$$(find rigctl/gui -name '*.py' | LC_ALL=C sort) -ts rigctl/gui/translations/rigctl_de.ts
-	$(BIN)/pyside6-lrelease rigctl/gui/translations/rigctl_de.ts
+		$$(find rigctl/gui -name '*.py' | LC_ALL=C sort) -ts $(TEXTS).ts
+	$(BIN)/pyside6-lrelease $(TEXTS).ts -qm $(TEXTS).qm.new && mv $(TEXTS).qm.new $(TEXTS).qm
+
+# Pictures of every page for the documents: a guided tour on a screen in memory.
+screenshots: $(VENV)/.dev
+	$(BIN)/python tests/gui/tour/make_screenshots.py
 
 figures: $(VENV)/.run
 	$(BIN)/rigctl model figures --out figures
 
+# Most of the time tests wait, for processes and for wires: three workers fill two processors.
 # Tests of real wires and real time work by the clock and may be late on a busy machine: what fails is run again, one
 # test at a time, and has to pass then.
 test: system lint types
-	$(BIN)/python -m pytest -n 2 --dist worksteal || $(BIN)/python -m pytest --last-failed --last-failed-no-failures none
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal || $(BIN)/python -m pytest --last-failed --last-failed-no-failures none
 
 # Says which Debian packages are missing for some of the tests; in CI installs them.
 system:

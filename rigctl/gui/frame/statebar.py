@@ -10,6 +10,7 @@ from PySide6.QtGui import QBrush, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
 
 from rigctl.gui.format import bytes_text, time_text
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState, Word
 from rigctl.gui.theme import ThemeKeeper
 
@@ -112,7 +113,7 @@ class StateBar(QWidget):
         self.left.setVisible(running and state.left_s is not None)
         if state.left_s is not None:
             self.left.setText(self.tr("{0} left").format(time_text(state.left_s)))
-        self.phase.setText(state.phase)
+        self.phase.setText(said(state.phase))
         self.disk.setVisible(state.disk_left_bytes is not None)
         if state.disk_left_bytes is not None:
             self.disk.setText(self.tr("{0} of disk left").format(bytes_text(state.disk_left_bytes)))
@@ -143,7 +144,7 @@ class StateBar(QWidget):
         self.phase.setVisible(cause is None)
         if cause is not None:
             self.cause.setProperty("look", "alarm")
-            self.cause.setText("▲ " + " ".join(part for part in (cause.words, cause.remedy) if part))
+            self.cause.setText("▲ " + " ".join(said(part) for part in (cause.words, cause.remedy) if part))
             self.cause.style().polish(self.cause)
 
     def _paint_word(self, state: RigState) -> None:

@@ -16,6 +16,7 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
 
 from rigctl.core.journal import Record
 from rigctl.gui.rig.near_limits import LimitWatch
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState
 
 translate = QCoreApplication.translate
@@ -170,7 +171,7 @@ class AlarmList:
 
 
 def _text(payload: dict[str, Any], *keys: str) -> str:
-    return next((str(payload[key]) for key in keys if payload.get(key)), "")
+    return said(next((str(payload[key]) for key in keys if payload.get(key)), ""))
 
 
 def _sentence(text: str) -> str:
@@ -207,10 +208,10 @@ def _plain(severity: str, words: str, remedy: str = "") -> Callable[[dict[str, A
 
 
 def _broken_off(p: dict[str, Any]) -> _Found | None:
-    reason = _text(p, "reason")
+    reason = str(p.get("reason") or "")
     if reason.endswith("by the operator") or reason.startswith("safety trip"):
         return None  # a person knows, or the trip itself is the alarm
-    words = translate("alarms", "Braking {0} was broken off: {1}").format(p.get("index"), reason)
+    words = translate("alarms", "Braking {0} was broken off: {1}").format(p.get("index"), said(reason))
     remedy = translate("alarms", "It can be repeated on the Run page.")
     return _Found("braking_broken_off", WARNING, _sentence(words), remedy)
 

@@ -28,6 +28,7 @@ from rigctl.engine.state import Progress, RunResult, Verb
 from rigctl.gui.rig.fold import after_loss, after_result, with_progress, with_record
 from rigctl.gui.rig.journal_tail import JournalTail
 from rigctl.gui.rig.launch import Launch
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState, Word
 
 LOOK_MS = 300  # how often new sessions, journal and started commands are looked at
@@ -266,7 +267,7 @@ class RigConnection(QObject):
         elif isinstance(news, Commander):
             self._set(replace(self.state, commander=news.who, commanding=news.you))
         elif isinstance(news, Answer) and news.reason:
-            self.refused.emit(" ".join(part for part in (_sentence(news.reason), news.remedy) if part))
+            self.refused.emit(" ".join(said(part) for part in (_sentence(news.reason), news.remedy) if part))
         elif isinstance(news, RunResult):
             self._result = news
             self._set(after_result(self.state, news))

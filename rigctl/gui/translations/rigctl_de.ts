@@ -373,11 +373,11 @@ kein Not-Halt</translation>
     </message>
     <message>
         <source>Notes</source>
-        <translation type="unfinished"></translation>
+        <translation>Notizen</translation>
     </message>
     <message>
         <source>Marks</source>
-        <translation type="unfinished"></translation>
+        <translation>Marken</translation>
     </message>
     <message>
         <source>Metadata</source>
@@ -2621,15 +2621,16 @@ s</translation>
     <message>
         <source>Time
 s</source>
-        <translation type="unfinished"></translation>
+        <translation>Zeit
+s</translation>
     </message>
     <message>
         <source>What happened</source>
-        <translation type="unfinished">Was geschah</translation>
+        <translation>Was geschah</translation>
     </message>
     <message>
         <source>Marks of the recording; click one to see it in time</source>
-        <translation type="unfinished">Marken der Aufzeichnung; Klick zeigt eine in der Zeit</translation>
+        <translation>Marken der Aufzeichnung; Klick zeigt eine in der Zeit</translation>
     </message>
 </context>
 <context>
@@ -4180,10 +4181,6 @@ bei [Hz]</translation>
         <translation>Wird geschätzt …</translation>
     </message>
     <message>
-        <source>Close</source>
-        <translation>Schließen</translation>
-    </message>
-    <message>
         <source>No course: the sequence is off</source>
         <translation>Kein Verlauf: die Sequenz ist aus</translation>
     </message>
@@ -4201,7 +4198,7 @@ bei [Hz]</translation>
     </message>
     <message>
         <source>Cannot be started, the check failed: {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>Kein Start, die Prüfung schlug fehl: {0}</translation>
     </message>
 </context>
 <context>
@@ -4339,15 +4336,15 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>Recorded without sound</source>
-        <translation type="unfinished"></translation>
+        <translation>Ohne Ton aufgezeichnet</translation>
     </message>
     <message>
         <source>Preparing …</source>
-        <translation type="unfinished"></translation>
+        <translation>Wird vorbereitet …</translation>
     </message>
     <message>
         <source>Louder by {0} dB</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauter um {0} dB</translation>
     </message>
     <message>
         <source>20 Pa is full scale</source>
@@ -4594,7 +4591,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>No campaign waits to be completed.</source>
-        <translation>Keine Kampagne wartet auf ihr Ende.</translation>
+        <translation>Keine Kampagne ist unvollständig.</translation>
     </message>
     <message>
         <source>Resume</source>
@@ -4683,6 +4680,13 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     <message>
         <source>Enter a whole number of 0 or more, or leave it empty.</source>
         <translation>Eine ganze Zahl ab 0 eingeben oder leer lassen.</translation>
+    </message>
+</context>
+<context>
+    <name>Starter</name>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
     </message>
 </context>
 <context>
@@ -5493,163 +5497,470 @@ Links eine hinzufügen.</translation>
     <name>alarms</name>
     <message>
         <source>Only {0} GB of disk are left.</source>
-        <translation type="unfinished"></translation>
+        <translation>Nur noch {0} GB auf der Platte frei.</translation>
     </message>
     <message>
         <source>Free some space before the next braking.</source>
-        <translation type="unfinished"></translation>
+        <translation>Vor der nächsten Bremsung Platz schaffen.</translation>
     </message>
     <message>
         <source>Further cause: {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>Weitere Ursache: {0}</translation>
     </message>
     <message>
         <source>{0} was refused: {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} wurde abgelehnt: {1}</translation>
     </message>
     <message>
         <source>Braking {0} was broken off: {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>Bremsung {0} wurde abgebrochen: {1}</translation>
     </message>
     <message>
         <source>It can be repeated on the Run page.</source>
-        <translation type="unfinished"></translation>
+        <translation>Auf der Seite Lauf lässt sie sich wiederholen.</translation>
     </message>
     <message>
         <source>Braking {0} was not recorded: {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>Bremsung {0} wurde nicht aufgezeichnet: {1}</translation>
     </message>
     <message>
         <source>See the disk and logs/recorder.log.</source>
-        <translation type="unfinished"></translation>
+        <translation>Platte und logs/recorder.log ansehen.</translation>
     </message>
     <message>
         <source>The run has failed: {0}</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Lauf ist fehlgeschlagen: {0}</translation>
     </message>
     <message>
         <source>See the logs.</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Protokolle (logs) ansehen.</translation>
     </message>
     <message>
         <source>Arming</source>
-        <translation type="unfinished"></translation>
+        <translation>Scharfschalten</translation>
     </message>
     <message>
         <source>Disarming</source>
-        <translation type="unfinished"></translation>
+        <translation>Entschärfen</translation>
     </message>
     <message>
         <source>The reset</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Rücksetzen</translation>
     </message>
     <message>
         <source>A second controller</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine zweite Steuerung</translation>
     </message>
     <message>
         <source>A message to the watchdog</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Nachricht an den Wächter</translation>
     </message>
     <message>
         <source>A sample of the safety channel</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein Wert des Sicherheitskanals</translation>
     </message>
     <message>
         <source>The safe state is not confirmed</source>
-        <translation type="unfinished"></translation>
+        <translation>Der sichere Zustand ist nicht bestätigt</translation>
     </message>
     <message>
         <source>Do not go near the rig; look at pressure and speed there.</source>
-        <translation type="unfinished"></translation>
+        <translation>Nicht an den Prüfstand treten; Druck und Drehzahl dort ansehen.</translation>
     </message>
     <message>
         <source>The safety channel has gone</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Sicherheitskanal ist weg</translation>
     </message>
     <message>
         <source>See logs/rig.log and the cables.</source>
-        <translation type="unfinished"></translation>
+        <translation>logs/rig.log und die Kabel ansehen.</translation>
     </message>
     <message>
         <source>The rig is not at rest after the trip</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Prüfstand steht nach der Auslösung nicht still</translation>
     </message>
     <message>
         <source>Do not go near it; press the emergency stop.</source>
-        <translation type="unfinished"></translation>
+        <translation>Nicht herantreten; Not-Halt drücken.</translation>
     </message>
     <message>
         <source>The rig was lost after the trip</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Prüfstand ging nach der Auslösung verloren</translation>
     </message>
     <message>
         <source>See logs.</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Protokolle (logs) ansehen.</translation>
     </message>
     <message>
         <source>The rig could not be run down</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Prüfstand ließ sich nicht herunterfahren</translation>
     </message>
     <message>
         <source>The relay has dropped; look at pressure and speed there.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Relais ist abgefallen; Druck und Drehzahl dort ansehen.</translation>
     </message>
     <message>
         <source>The recorder has gone</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Rekorder ist weg</translation>
     </message>
     <message>
         <source>See logs/recorder.log.</source>
-        <translation type="unfinished"></translation>
+        <translation>logs/recorder.log ansehen.</translation>
     </message>
     <message>
         <source>The controller has failed</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Steuerung ist ausgefallen</translation>
     </message>
     <message>
         <source>See logs/controller.log.</source>
-        <translation type="unfinished"></translation>
+        <translation>logs/controller.log ansehen.</translation>
     </message>
     <message>
         <source>A manual command has failed</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein Handbefehl schlug fehl</translation>
     </message>
     <message>
         <source>Nobody commanded: the rig was run down</source>
-        <translation type="unfinished"></translation>
+        <translation>Niemand hat befohlen: der Prüfstand wurde heruntergefahren</translation>
     </message>
     <message>
         <source>Take command.</source>
-        <translation type="unfinished"></translation>
+        <translation>Kommando übernehmen.</translation>
     </message>
     <message>
         <source>Brake pressure</source>
-        <translation type="unfinished">Bremsdruck</translation>
+        <translation>Bremsdruck</translation>
     </message>
     <message>
         <source>Speed</source>
-        <translation type="unfinished">Drehzahl</translation>
+        <translation>Drehzahl</translation>
     </message>
     <message>
         <source>Torque</source>
-        <translation type="unfinished">Moment</translation>
+        <translation>Moment</translation>
     </message>
     <message>
         <source>Disc temperature</source>
-        <translation type="unfinished">Scheibentemperatur</translation>
+        <translation>Scheibentemperatur</translation>
     </message>
     <message>
         <source>Friction power</source>
-        <translation type="unfinished"></translation>
+        <translation>Reibleistung</translation>
     </message>
     <message>
         <source>{0} {1} is near its limit {2}.</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} {1} liegt nahe am Grenzwert {2}.</translation>
     </message>
     <message>
         <source>At the limit the watchdog trips: take some load off.</source>
-        <translation type="unfinished"></translation>
+        <translation>Am Grenzwert löst der Wächter aus: Last wegnehmen.</translation>
+    </message>
+</context>
+<context>
+    <name>checks</name>
+    <message>
+        <source>{0} is not from {1} to {2}</source>
+        <translation>{0} liegt nicht zwischen {1} und {2}</translation>
+    </message>
+    <message>
+        <source>{0} is not above {1} and up to {2}</source>
+        <translation>{0} liegt nicht über {1} und bis {2}</translation>
+    </message>
+    <message>
+        <source>{0} is not a number that can be set</source>
+        <translation>{0} ist keine einstellbare Zahl</translation>
+    </message>
+    <message>
+        <source>give a whole number of 1 or more</source>
+        <translation>eine ganze Zahl ab 1 angeben</translation>
+    </message>
+    <message>
+        <source>give a whole number of 0 or more</source>
+        <translation>eine ganze Zahl ab 0 angeben</translation>
+    </message>
+    <message>
+        <source>give a whole number of 1 or more, e.g. {0}</source>
+        <translation>eine ganze Zahl ab 1 angeben, z. B. {0}</translation>
+    </message>
+    <message>
+        <source>give the sampling rate in Hz, e.g. {0}</source>
+        <translation>die Abtastrate in Hz angeben, z. B. {0}</translation>
+    </message>
+    <message>
+        <source>give a time in seconds from {0} to {1}, e.g. {2}</source>
+        <translation>eine Zeit in Sekunden von {0} bis {1} angeben, z. B. {2}</translation>
+    </message>
+    <message>
+        <source>give the duration in seconds, at most one hour</source>
+        <translation>die Dauer in Sekunden angeben, höchstens eine Stunde</translation>
+    </message>
+    <message>
+        <source>give a time in seconds, 0 or more, at most one day</source>
+        <translation>eine Zeit in Sekunden ab 0 angeben, höchstens einen Tag</translation>
+    </message>
+    <message>
+        <source>give a time in seconds, at most one day</source>
+        <translation>eine Zeit in Sekunden angeben, höchstens einen Tag</translation>
+    </message>
+    <message>
+        <source>give the disc speed in 1/min; negative is the reverse direction</source>
+        <translation>die Drehzahl der Scheibe in 1/min angeben; negativ ist rückwärts</translation>
+    </message>
+    <message>
+        <source>give the brake pressure in bar, 0 or more</source>
+        <translation>den Bremsdruck in bar angeben, ab 0</translation>
+    </message>
+    <message>
+        <source>give the pressure offset from the working point in bar</source>
+        <translation>den Abstand vom Arbeitspunkt in bar angeben</translation>
+    </message>
+    <message>
+        <source>give the amplitude in bar, 0 or more; 0 is &apos;constant&apos;</source>
+        <translation>die Amplitude in bar angeben, ab 0; 0 ist &apos;konstant&apos;</translation>
+    </message>
+    <message>
+        <source>give the frequency of the pressure function in Hz, e.g. {0}</source>
+        <translation>die Frequenz des Druckverlaufs in Hz angeben, z. B. {0}</translation>
+    </message>
+    <message>
+        <source>give the disc temperature in degrees Celsius (0 K is {0})</source>
+        <translation>die Scheibentemperatur in Grad Celsius angeben (0 K ist {0})</translation>
+    </message>
+    <message>
+        <source>give the half width of the band in kelvin, e.g. {0}</source>
+        <translation>die halbe Breite des Bandes in Kelvin angeben, z. B. {0}</translation>
+    </message>
+    <message>
+        <source>dragging at {0} does not heat</source>
+        <translation>Schleifen bei {0} heizt nicht</translation>
+    </message>
+    <message>
+        <source>leave out drag_speed_rpm and drag_pressure_bar to use the rig&apos;s own, or give values above 0</source>
+        <translation>Schleifdrehzahl und Schleifdruck leer lassen für die des Prüfstands, oder Werte über 0 angeben</translation>
+    </message>
+    <message>
+        <source>max_degc = {0} is below cool_down_degc = {1}</source>
+        <translation>Maximaltemperatur {0} liegt unter Abkühltemperatur {1}</translation>
+    </message>
+    <message>
+        <source>let the cool-down temperature be the lower one, e.g. max_degc = {0}, cool_down_degc = {1}</source>
+        <translation>die Abkühltemperatur muss die kleinere sein, z. B. Maximaltemperatur {0}, Abkühltemperatur {1}</translation>
+    </message>
+    <message>
+        <source>channel {0} is listed twice</source>
+        <translation>Kanal {0} ist doppelt aufgeführt</translation>
+    </message>
+    <message>
+        <source>remove one of them</source>
+        <translation>einen davon entfernen</translation>
+    </message>
+    <message>
+        <source>the segments last {0} s together</source>
+        <translation>die Abschnitte dauern zusammen {0} s</translation>
+    </message>
+    <message>
+        <source>shorten the braking to at most {0} s</source>
+        <translation>die Bremsung auf höchstens {0} s kürzen</translation>
+    </message>
+    <message>
+        <source>the speed jumps by {0} 1/min after segment {1}</source>
+        <translation>die Drehzahl springt nach Abschnitt {1} um {0} 1/min</translation>
+    </message>
+    <message>
+        <source>let the next segment start where the last one ends, or put a ramp between them</source>
+        <translation>den nächsten Abschnitt beginnen, wo der letzte endet, oder eine Rampe dazwischen setzen</translation>
+    </message>
+    <message>
+        <source>{0} brakings are more than {1}</source>
+        <translation>{0} Bremsungen sind mehr als {1}</translation>
+    </message>
+    <message>
+        <source>shorten the lists or the repetition; split the work into several programs</source>
+        <translation>Listen oder Wiederholungen kürzen; auf mehrere Programme aufteilen</translation>
+    </message>
+    <message>
+        <source>split the work into several programs</source>
+        <translation>auf mehrere Programme aufteilen</translation>
+    </message>
+    <message>
+        <source>temperatures_degc: {0} degC is above limits.max_degc = {1}</source>
+        <translation>Temperaturen: {0} °C liegt über der Maximaltemperatur {1}</translation>
+    </message>
+    <message>
+        <source>lower the temperature, or raise limits.max_degc if brake and rig allow it</source>
+        <translation>Temperatur senken, oder die Maximaltemperatur anheben, wenn Bremse und Prüfstand es erlauben</translation>
+    </message>
+    <message>
+        <source>pressures_bar: the working point {0} bar less the amplitude is {1} bar</source>
+        <translation>Drücke: Arbeitspunkt {0} bar weniger Amplitude ist {1} bar</translation>
+    </message>
+    <message>
+        <source>raise the working point or reduce the amplitude: the pressure cannot be negative</source>
+        <translation>Arbeitspunkt anheben oder Amplitude verkleinern: der Druck kann nicht negativ sein</translation>
+    </message>
+    <message>
+        <source>pressure_function.rise_s = {0} is not shorter than the braking of {1} s</source>
+        <translation>Anstiegszeit {0} ist nicht kürzer als die Bremsung von {1} s</translation>
+    </message>
+    <message>
+        <source>shorten rise_s or lengthen the braking</source>
+        <translation>Anstiegszeit kürzen oder Bremsung verlängern</translation>
+    </message>
+    <message>
+        <source>two sequences are called {0}</source>
+        <translation>zwei Sequenzen heißen {0}</translation>
+    </message>
+    <message>
+        <source>give each sequence its own name (capitals do not distinguish)</source>
+        <translation>jeder Sequenz einen eigenen Namen geben (Groß und Klein zählt nicht)</translation>
+    </message>
+    <message>
+        <source>{0} the conditioning drag does not heat the disc to this temperature</source>
+        <translation>{0}: das Schleifen heizt die Scheibe nicht auf diese Temperatur</translation>
+    </message>
+    <message>
+        <source>raise conditioning.drag_pressure_bar or drag_speed_rpm, or lower the temperature</source>
+        <translation>Schleifdruck oder Schleifdrehzahl erhöhen, oder Temperatur senken</translation>
+    </message>
+    <message>
+        <source>{0} conditioning is expected to take longer than its time-out</source>
+        <translation>{0}: die Konditionierung dauert voraussichtlich länger als ihr Zeitlimit</translation>
+    </message>
+    <message>
+        <source>raise conditioning.timeout_s, or choose a loop order with smaller temperature steps</source>
+        <translation>Zeitlimit erhöhen, oder eine Schleifenfolge mit kleineren Temperaturschritten wählen</translation>
+    </message>
+    <message>
+        <source>{0} the braking is expected to heat the disc above this limit, and would be cut short</source>
+        <translation>{0}: die Bremsung heizt die Scheibe voraussichtlich darüber und würde vorzeitig enden</translation>
+    </message>
+    <message>
+        <source>start cooler, or brake shorter or with less pressure</source>
+        <translation>kälter beginnen, kürzer oder mit weniger Druck bremsen</translation>
+    </message>
+    <message>
+        <source>{0} is above the {1} degC the rig allows for the disc</source>
+        <translation>{0} liegt über den {1} °C, die der Prüfstand der Scheibe erlaubt</translation>
+    </message>
+    <message>
+        <source>set limits.max_degc to {0} or less</source>
+        <translation>Maximaltemperatur auf höchstens {0} setzen</translation>
+    </message>
+    <message>
+        <source>use start temperatures up to {0} degC</source>
+        <translation>Starttemperaturen bis {0} °C benutzen</translation>
+    </message>
+    <message>
+        <source>{0} is not reached by cooling with air of {1} degC</source>
+        <translation>{0} wird durch Kühlen mit Luft von {1} °C nicht erreicht</translation>
+    </message>
+    <message>
+        <source>use start temperatures from {0} degC</source>
+        <translation>Starttemperaturen ab {0} °C benutzen</translation>
+    </message>
+    <message>
+        <source>{0} is not within {1} to {2} 1/min of the drive</source>
+        <translation>{0} liegt nicht in {1} bis {2} 1/min des Antriebs</translation>
+    </message>
+    <message>
+        <source>leave it out to use the rig&apos;s own {0}</source>
+        <translation>leer lassen für {0} des Prüfstands</translation>
+    </message>
+    <message>
+        <source>{0} is not within {1} to {2} bar of the actuator</source>
+        <translation>{0} liegt nicht in {1} bis {2} bar des Aktors</translation>
+    </message>
+    <message>
+        <source>{0} is above the {1} 1/min of the drive</source>
+        <translation>{0} liegt über den {1} 1/min des Antriebs</translation>
+    </message>
+    <message>
+        <source>use speeds up to {0} 1/min</source>
+        <translation>Drehzahlen bis {0} 1/min benutzen</translation>
+    </message>
+    <message>
+        <source>{0} is the reverse direction, which this drive does not run</source>
+        <translation>{0} ist rückwärts, das kann dieser Antrieb nicht</translation>
+    </message>
+    <message>
+        <source>{0} is below the {1} 1/min of the drive in reverse</source>
+        <translation>{0} liegt unter den {1} 1/min des Antriebs rückwärts</translation>
+    </message>
+    <message>
+        <source>use speeds from {0} 1/min</source>
+        <translation>Drehzahlen ab {0} 1/min benutzen</translation>
+    </message>
+    <message>
+        <source>{0} is steeper than the drive&apos;s ramp of {1} 1/min per s</source>
+        <translation>{0} ist steiler als die Rampe des Antriebs von {1} 1/min je s</translation>
+    </message>
+    <message>
+        <source>lengthen the segment, or reduce the difference of its two speeds</source>
+        <translation>Abschnitt verlängern, oder den Unterschied seiner zwei Drehzahlen verkleinern</translation>
+    </message>
+    <message>
+        <source>{0} is above the {1} bar of the actuator (working point plus amplitude)</source>
+        <translation>{0} liegt über den {1} bar des Aktors (Arbeitspunkt plus Amplitude)</translation>
+    </message>
+    <message>
+        <source>keep working point plus amplitude at {0} bar or less</source>
+        <translation>Arbeitspunkt plus Amplitude höchstens {0} bar</translation>
+    </message>
+    <message>
+        <source>{0} is below {1} bar, the lowest pressure the actuator can hold</source>
+        <translation>{0} liegt unter {1} bar, dem kleinsten Druck, den der Aktor halten kann</translation>
+    </message>
+    <message>
+        <source>use 0, or at least {0} bar after subtracting the amplitude</source>
+        <translation>0 benutzen, oder nach Abzug der Amplitude mindestens {0} bar</translation>
+    </message>
+    <message>
+        <source>{0} is faster than the actuator&apos;s {1} bar/s</source>
+        <translation>{0} ist schneller als die {1} bar/s des Aktors</translation>
+    </message>
+    <message>
+        <source>lower amplitude or frequency, or lengthen rise_s or the braking</source>
+        <translation>Amplitude oder Frequenz senken, oder Anstiegszeit oder Bremsung verlängern</translation>
+    </message>
+    <message>
+        <source>{0} of possible brake torque are above the {1} N·m of the drive</source>
+        <translation>{0} mögliches Bremsmoment liegen über den {1} N·m des Antriebs</translation>
+    </message>
+    <message>
+        <source>use at most {0} bar</source>
+        <translation>höchstens {0} bar benutzen</translation>
+    </message>
+    <message>
+        <source>{0} of possible brake power are above the {1} kW of the drive</source>
+        <translation>{0} mögliche Bremsleistung liegen über den {1} kW des Antriebs</translation>
+    </message>
+    <message>
+        <source>reduce the speed or the pressure</source>
+        <translation>Drehzahl oder Druck senken</translation>
+    </message>
+    <message>
+        <source>{0} is no channel of this rig</source>
+        <translation>{0} ist kein Kanal dieses Prüfstands</translation>
+    </message>
+    <message>
+        <source>choose from: {0}</source>
+        <translation>wählen aus: {0}</translation>
+    </message>
+    <message>
+        <source>{0} is a sound channel and would record the ventilator</source>
+        <translation>{0} ist ein Schallkanal und würde den Lüfter aufzeichnen</translation>
+    </message>
+    <message>
+        <source>set ventilator = false, or remove the channel from recording.channels</source>
+        <translation>Lüfter beim Bremsen ausschalten, oder den Kanal aus der Aufzeichnung nehmen</translation>
+    </message>
+    <message>
+        <source>{0} at {1} Hz cannot be stored at this rate: it is not the channel&apos;s own rate divided by a whole number</source>
+        <translation>{0} mit {1} Hz lässt sich so nicht speichern: die Rate ist nicht die des Kanals geteilt durch eine ganze Zahl</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is sampled at {1} Hz: choose sampling_hz and decimation so that sampling_hz / decimation is {2} ... Hz</source>
+        <translation>&apos;{0}&apos; wird mit {1} Hz abgetastet: Abtastrate und Dezimierung so wählen, dass ihr Quotient {2} ... Hz ist</translation>
     </message>
 </context>
 <context>
@@ -6355,7 +6666,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>{0}, at any pressure</source>
-        <translation type="unfinished"></translation>
+        <translation>{0}, bei jedem Druck</translation>
     </message>
     <message>
         <source>1 mode unstable</source>
@@ -6500,6 +6811,649 @@ Links eine hinzufügen.</translation>
     </message>
 </context>
 <context>
+    <name>rig</name>
+    <message>
+        <source>arming</source>
+        <translation>schaltet scharf</translation>
+    </message>
+    <message>
+        <source>paused</source>
+        <translation>Pause</translation>
+    </message>
+    <message>
+        <source>ready</source>
+        <translation>bereit</translation>
+    </message>
+    <message>
+        <source>locked</source>
+        <translation>gesperrt</translation>
+    </message>
+    <message>
+        <source>by hand</source>
+        <translation>von Hand</translation>
+    </message>
+    <message>
+        <source>safe state</source>
+        <translation>sicherer Zustand</translation>
+    </message>
+    <message>
+        <source>conditioning</source>
+        <translation>Konditionierung</translation>
+    </message>
+    <message>
+        <source>pressure course</source>
+        <translation>Druckverlauf</translation>
+    </message>
+    <message>
+        <source>braking</source>
+        <translation>bremst</translation>
+    </message>
+    <message>
+        <source>releasing</source>
+        <translation>löst</translation>
+    </message>
+    <message>
+        <source>dwelling</source>
+        <translation>Pause zwischen Bremsungen</translation>
+    </message>
+    <message>
+        <source>stopping</source>
+        <translation>hält an</translation>
+    </message>
+    <message>
+        <source>spinning up to {0} 1/min</source>
+        <translation>fährt hoch auf {0} 1/min</translation>
+    </message>
+    <message>
+        <source>braking with {0} bar</source>
+        <translation>bremst mit {0} bar</translation>
+    </message>
+    <message>
+        <source>heating to {0} °C</source>
+        <translation>heizt auf {0} °C</translation>
+    </message>
+    <message>
+        <source>cooling to {0} °C</source>
+        <translation>kühlt auf {0} °C</translation>
+    </message>
+    <message>
+        <source>resting until {0} °C</source>
+        <translation>ruht bis {0} °C</translation>
+    </message>
+    <message>
+        <source>soaking at {0} °C</source>
+        <translation>hält {0} °C</translation>
+    </message>
+    <message>
+        <source>finished</source>
+        <translation>fertig</translation>
+    </message>
+    <message>
+        <source>stopped</source>
+        <translation>angehalten</translation>
+    </message>
+    <message>
+        <source>tripped</source>
+        <translation>ausgelöst</translation>
+    </message>
+    <message>
+        <source>failed</source>
+        <translation>fehlgeschlagen</translation>
+    </message>
+    <message>
+        <source>{0}: {1} of {2} brakings complete</source>
+        <translation>{0}: {1} von {2} Bremsungen vollständig</translation>
+    </message>
+    <message>
+        <source>The controller process has gone.</source>
+        <translation>Der Prozess der Steuerung ist weg.</translation>
+    </message>
+    <message>
+        <source>The watchdog brings the rig to the safe state.</source>
+        <translation>Der Wächter bringt den Prüfstand in den sicheren Zustand.</translation>
+    </message>
+    <message>
+        <source>The rig is in the safe state: torque off, pressure vented.</source>
+        <translation>Der Prüfstand ist im sicheren Zustand: Moment weg, Druck abgelassen.</translation>
+    </message>
+    <message>
+        <source>The controller has gone; waiting for the safe state …</source>
+        <translation>Die Steuerung ist weg; warten auf den sicheren Zustand …</translation>
+    </message>
+    <message>
+        <source>stop by the operator</source>
+        <translation>Stopp von Hand</translation>
+    </message>
+    <message>
+        <source>stopped by the operator</source>
+        <translation>von Hand angehalten</translation>
+    </message>
+    <message>
+        <source>pause by the operator</source>
+        <translation>Pause von Hand</translation>
+    </message>
+    <message>
+        <source>skip by the operator</source>
+        <translation>von Hand übersprungen</translation>
+    </message>
+    <message>
+        <source>repeat by the operator</source>
+        <translation>von Hand wiederholt</translation>
+    </message>
+    <message>
+        <source>pressure by hand</source>
+        <translation>Druck von Hand</translation>
+    </message>
+    <message>
+        <source>speed by hand</source>
+        <translation>Drehzahl von Hand</translation>
+    </message>
+    <message>
+        <source>conditioning by hand</source>
+        <translation>Konditionierung von Hand</translation>
+    </message>
+    <message>
+        <source>disabled by the operator</source>
+        <translation>von Hand gesperrt</translation>
+    </message>
+    <message>
+        <source>enabled again</source>
+        <translation>wieder freigegeben</translation>
+    </message>
+    <message>
+        <source>nobody commands</source>
+        <translation>niemand befiehlt</translation>
+    </message>
+    <message>
+        <source>safety trip: {0}</source>
+        <translation>Auslösung: {0}</translation>
+    </message>
+    <message>
+        <source>disc at {0} °C, above max_degc {1} °C</source>
+        <translation>Scheibe bei {0} °C, über der Maximaltemperatur {1} °C</translation>
+    </message>
+    <message>
+        <source>conditioning: {0}</source>
+        <translation>Konditionierung: {0}</translation>
+    </message>
+    <message>
+        <source>spin up: {0}</source>
+        <translation>Hochfahren: {0}</translation>
+    </message>
+    <message>
+        <source>release: {0}</source>
+        <translation>Lösen: {0}</translation>
+    </message>
+    <message>
+        <source>run down: {0}</source>
+        <translation>Herunterfahren: {0}</translation>
+    </message>
+    <message>
+        <source>the disc has {0} °C, not {1} °C, after {2} s.</source>
+        <translation>die Scheibe hat nach {2} s {0} °C, nicht {1} °C.</translation>
+    </message>
+    <message>
+        <source>the drive did not reach {0} 1/min within {1} s.</source>
+        <translation>der Antrieb erreichte {0} 1/min nicht in {1} s.</translation>
+    </message>
+    <message>
+        <source>{0} bar remain {1} s after the release.</source>
+        <translation>{1} s nach dem Lösen bleiben {0} bar.</translation>
+    </message>
+    <message>
+        <source>the rig does not come to rest: {0} 1/min, {1} bar.</source>
+        <translation>der Prüfstand kommt nicht zum Stillstand: {0} 1/min, {1} bar.</translation>
+    </message>
+    <message>
+        <source>Look at the drive&apos;s ramp settings and its current limit.</source>
+        <translation>Rampe und Stromgrenze des Antriebs ansehen.</translation>
+    </message>
+    <message>
+        <source>Check the vent valve.</source>
+        <translation>Entlüftungsventil prüfen.</translation>
+    </message>
+    <message>
+        <source>Use the emergency stop.</source>
+        <translation>Not-Halt drücken.</translation>
+    </message>
+    <message>
+        <source>Remove the cause, then run `rigctl resume`.</source>
+        <translation>Ursache beseitigen, dann fortsetzen (rigctl resume).</translation>
+    </message>
+    <message>
+        <source>brake pressure has no valid reading</source>
+        <translation>der Bremsdruck hat keinen gültigen Wert</translation>
+    </message>
+    <message>
+        <source>speed has no valid reading</source>
+        <translation>die Drehzahl hat keinen gültigen Wert</translation>
+    </message>
+    <message>
+        <source>torque has no valid reading</source>
+        <translation>das Moment hat keinen gültigen Wert</translation>
+    </message>
+    <message>
+        <source>disc temperature has no valid reading</source>
+        <translation>die Scheibentemperatur hat keinen gültigen Wert</translation>
+    </message>
+    <message>
+        <source>brake pressure is not measured any more</source>
+        <translation>der Bremsdruck wird nicht mehr gemessen</translation>
+    </message>
+    <message>
+        <source>speed is not measured any more</source>
+        <translation>die Drehzahl wird nicht mehr gemessen</translation>
+    </message>
+    <message>
+        <source>torque is not measured any more</source>
+        <translation>das Moment wird nicht mehr gemessen</translation>
+    </message>
+    <message>
+        <source>disc temperature is not measured any more</source>
+        <translation>die Scheibentemperatur wird nicht mehr gemessen</translation>
+    </message>
+    <message>
+        <source>brake pressure has been the same number for too long</source>
+        <translation>der Bremsdruck ist zu lange dieselbe Zahl</translation>
+    </message>
+    <message>
+        <source>speed has been the same number for too long</source>
+        <translation>die Drehzahl ist zu lange dieselbe Zahl</translation>
+    </message>
+    <message>
+        <source>torque has been the same number for too long</source>
+        <translation>das Moment ist zu lange dieselbe Zahl</translation>
+    </message>
+    <message>
+        <source>disc temperature has been the same number for too long</source>
+        <translation>die Scheibentemperatur ist zu lange dieselbe Zahl</translation>
+    </message>
+    <message>
+        <source>blocks of the safety channel are missing or repeated</source>
+        <translation>Blöcke des Sicherheitskanals fehlen oder wiederholen sich</translation>
+    </message>
+    <message>
+        <source>the safety channel&apos;s clock does not fit its blocks</source>
+        <translation>die Uhr des Sicherheitskanals passt nicht zu seinen Blöcken</translation>
+    </message>
+    <message>
+        <source>brake pressure in bar is far too high</source>
+        <translation>der Bremsdruck in bar ist viel zu hoch</translation>
+    </message>
+    <message>
+        <source>brake pressure in bar is out of its range</source>
+        <translation>der Bremsdruck in bar ist außerhalb seines Bereichs</translation>
+    </message>
+    <message>
+        <source>speed in 1/min is out of its range</source>
+        <translation>die Drehzahl in 1/min ist außerhalb ihres Bereichs</translation>
+    </message>
+    <message>
+        <source>torque in N·m is out of its range</source>
+        <translation>das Moment in N·m ist außerhalb seines Bereichs</translation>
+    </message>
+    <message>
+        <source>disc temperature in °C is out of its range</source>
+        <translation>die Scheibentemperatur in °C ist außerhalb ihres Bereichs</translation>
+    </message>
+    <message>
+        <source>disc temperature in °C would pass its limit before a stop</source>
+        <translation>die Scheibentemperatur in °C würde vor dem Halt ihren Grenzwert überschreiten</translation>
+    </message>
+    <message>
+        <source>friction power in kW is far too high</source>
+        <translation>die Reibleistung in kW ist viel zu hoch</translation>
+    </message>
+    <message>
+        <source>friction power in kW is too high</source>
+        <translation>die Reibleistung in kW ist zu hoch</translation>
+    </message>
+    <message>
+        <source>the safety relay reads closed though it was told to open</source>
+        <translation>das Sicherheitsrelais meldet geschlossen, obwohl es öffnen soll</translation>
+    </message>
+    <message>
+        <source>the safety relay reads open though it was told to close</source>
+        <translation>das Sicherheitsrelais meldet offen, obwohl es schließen soll</translation>
+    </message>
+    <message>
+        <source>the drive says it is enabled while the safety relay is open</source>
+        <translation>der Antrieb meldet freigegeben, während das Sicherheitsrelais offen ist</translation>
+    </message>
+    <message>
+        <source>the safety channel is at fault</source>
+        <translation>der Sicherheitskanal ist gestört</translation>
+    </message>
+    <message>
+        <source>the emergency stop is pressed</source>
+        <translation>der Not-Halt ist gedrückt</translation>
+    </message>
+    <message>
+        <source>a door is open</source>
+        <translation>eine Tür ist offen</translation>
+    </message>
+    <message>
+        <source>the controller&apos;s heartbeat is wrong</source>
+        <translation>das Lebenszeichen der Steuerung ist falsch</translation>
+    </message>
+    <message>
+        <source>the controller&apos;s heartbeat does not come</source>
+        <translation>das Lebenszeichen der Steuerung bleibt aus</translation>
+    </message>
+    <message>
+        <source>the controller commands a set-point that is not allowed</source>
+        <translation>die Steuerung befiehlt einen unerlaubten Sollwert</translation>
+    </message>
+    <message>
+        <source>the controller has gone</source>
+        <translation>die Steuerung ist weg</translation>
+    </message>
+    <message>
+        <source>the controller does not read the watchdog&apos;s status</source>
+        <translation>die Steuerung liest den Status des Wächters nicht</translation>
+    </message>
+    <message>
+        <source>the safety channel is silent</source>
+        <translation>der Sicherheitskanal schweigt</translation>
+    </message>
+    <message>
+        <source>the link to the rig&apos;s safety channel is closed</source>
+        <translation>die Verbindung zum Sicherheitskanal des Prüfstands ist zu</translation>
+    </message>
+    <message>
+        <source>the safety channel sends what cannot be read</source>
+        <translation>der Sicherheitskanal sendet Unlesbares</translation>
+    </message>
+    <message>
+        <source>the limits in memory have changed</source>
+        <translation>die Grenzwerte im Speicher haben sich geändert</translation>
+    </message>
+    <message>
+        <source>a cycle of the watchdog was not complete</source>
+        <translation>ein Zyklus des Wächters war unvollständig</translation>
+    </message>
+    <message>
+        <source>the watchdog has failed</source>
+        <translation>der Wächter ist ausgefallen</translation>
+    </message>
+    <message>
+        <source>the journal cannot be written</source>
+        <translation>das Journal ist nicht beschreibbar</translation>
+    </message>
+    <message>
+        <source>the watchdog was told to end while the rig was armed</source>
+        <translation>der Wächter sollte enden, während der Prüfstand scharf war</translation>
+    </message>
+    <message>
+        <source>Look at the sensor, its cable and its supply; then reset with a reason.</source>
+        <translation>Sensor, Kabel und Versorgung ansehen; dann mit Grund rücksetzen.</translation>
+    </message>
+    <message>
+        <source>Look at the controller&apos;s log; reset with a reason or resume the campaign.</source>
+        <translation>Protokoll der Steuerung ansehen; mit Grund rücksetzen oder die Kampagne fortsetzen.</translation>
+    </message>
+    <message>
+        <source>Find out why before anything moves again; then reset with a reason.</source>
+        <translation>Ursache finden, bevor sich wieder etwas bewegt; dann mit Grund rücksetzen.</translation>
+    </message>
+    <message>
+        <source>Start the watchdog anew.</source>
+        <translation>Den Wächter neu starten.</translation>
+    </message>
+    <message>
+        <source>Let the disc cool; then reset.</source>
+        <translation>Scheibe abkühlen lassen; dann rücksetzen.</translation>
+    </message>
+    <message>
+        <source>Switch the drive off at its main switch. The relay or its read-back is defective.</source>
+        <translation>Antrieb am Hauptschalter ausschalten. Das Relais oder seine Rückmeldung ist defekt.</translation>
+    </message>
+    <message>
+        <source>Look at emergency stop, doors, the relay and its read-back; then reset.</source>
+        <translation>Not-Halt, Türen, Relais und seine Rückmeldung ansehen; dann rücksetzen.</translation>
+    </message>
+    <message>
+        <source>Switch the drive off at its main switch. Its torque-off input does not work.</source>
+        <translation>Antrieb am Hauptschalter ausschalten. Sein Moment-aus-Eingang wirkt nicht.</translation>
+    </message>
+    <message>
+        <source>Release it at the rig; then reset.</source>
+        <translation>Am Prüfstand entriegeln; dann rücksetzen.</translation>
+    </message>
+    <message>
+        <source>Close it; then reset.</source>
+        <translation>Schließen; dann rücksetzen.</translation>
+    </message>
+    <message>
+        <source>Make room on the disk; start the watchdog anew.</source>
+        <translation>Platz auf der Platte schaffen; den Wächter neu starten.</translation>
+    </message>
+    <message>
+        <source>An earlier trip has not been acknowledged: {0}</source>
+        <translation>Eine frühere Auslösung ist nicht quittiert: {0}</translation>
+    </message>
+    <message>
+        <source>Acknowledge it with your name and a reason.</source>
+        <translation>Mit Name und Grund quittieren.</translation>
+    </message>
+    <message>
+        <source>Seen so far: {0} good samples of {1}, {2} good heartbeats of {3}.</source>
+        <translation>Bisher gesehen: {0} von {1} guten Werten, {2} von {3} guten Lebenszeichen.</translation>
+    </message>
+    <message>
+        <source>The rig is not at rest: {0}.</source>
+        <translation>Der Prüfstand steht nicht still: {0}.</translation>
+    </message>
+    <message>
+        <source>The controller&apos;s set-points are not zero.</source>
+        <translation>Die Sollwerte der Steuerung sind nicht null.</translation>
+    </message>
+    <message>
+        <source>Arm with pressure and speed at zero.</source>
+        <translation>Mit Druck und Drehzahl null scharf schalten.</translation>
+    </message>
+    <message>
+        <source>The limits file has been changed since the watchdog read it.</source>
+        <translation>Die Grenzwertdatei wurde geändert, seit der Wächter sie las.</translation>
+    </message>
+    <message>
+        <source>Start the watchdog anew, so that it reads the new file.</source>
+        <translation>Den Wächter neu starten, damit er die neue Datei liest.</translation>
+    </message>
+    <message>
+        <source>The proof test failed for {0}.</source>
+        <translation>Der Selbsttest schlug fehl für {0}.</translation>
+    </message>
+    <message>
+        <source>Look at the limits of these checks.</source>
+        <translation>Grenzwerte dieser Prüfungen ansehen.</translation>
+    </message>
+    <message>
+        <source>The reset does not say {0}.</source>
+        <translation>Dem Rücksetzen fehlt: {0}.</translation>
+    </message>
+    <message>
+        <source>Give your name and a reason in words.</source>
+        <translation>Name und Grund in Worten angeben.</translation>
+    </message>
+    <message>
+        <source>This trip cannot be reset: {0}</source>
+        <translation>Diese Auslösung lässt sich nicht rücksetzen: {0}</translation>
+    </message>
+    <message>
+        <source>The same cause has been reset {0} times within an hour.</source>
+        <translation>Dieselbe Ursache wurde in einer Stunde {0}-mal rückgesetzt.</translation>
+    </message>
+    <message>
+        <source>The same cause has been reset too often this hour.</source>
+        <translation>Dieselbe Ursache wurde in dieser Stunde zu oft rückgesetzt.</translation>
+    </message>
+    <message>
+        <source>Find the cause; a further reset is possible an hour after the first.</source>
+        <translation>Ursache finden; rücksetzen geht erst eine Stunde nach dem ersten Mal wieder.</translation>
+    </message>
+    <message>
+        <source>The safety relay still reads closed.</source>
+        <translation>Das Sicherheitsrelais meldet noch geschlossen.</translation>
+    </message>
+    <message>
+        <source>Look at the relay.</source>
+        <translation>Das Relais ansehen.</translation>
+    </message>
+    <message>
+        <source>The rig has not been at rest for {0} s: {1}.</source>
+        <translation>Der Prüfstand steht noch keine {0} s still: {1}.</translation>
+    </message>
+    <message>
+        <source>The controller has given {0} good heartbeats of {1}.</source>
+        <translation>Die Steuerung gab {0} von {1} guten Lebenszeichen.</translation>
+    </message>
+    <message>
+        <source>Wait, or look at the controller.</source>
+        <translation>Warten, oder die Steuerung ansehen.</translation>
+    </message>
+    <message>
+        <source>Make room on the disk.</source>
+        <translation>Platz auf der Platte schaffen.</translation>
+    </message>
+    <message>
+        <source>Wait.</source>
+        <translation>Warten.</translation>
+    </message>
+    <message>
+        <source>the safety relay has opened.</source>
+        <translation>das Sicherheitsrelais hat geöffnet.</translation>
+    </message>
+    <message>
+        <source>Look at emergency stop, doors and logs/watchdog.log.</source>
+        <translation>Not-Halt, Türen und logs/watchdog.log ansehen.</translation>
+    </message>
+    <message>
+        <source>the watchdog does not arm.</source>
+        <translation>der Wächter schaltet nicht scharf.</translation>
+    </message>
+    <message>
+        <source>the watchdog does not arm. {0}</source>
+        <translation>der Wächter schaltet nicht scharf. {0}</translation>
+    </message>
+    <message>
+        <source>See the journal and logs/watchdog.log.</source>
+        <translation>Journal und logs/watchdog.log ansehen.</translation>
+    </message>
+    <message>
+        <source>the watchdog has been silent for {0} s; the safety relay opens by itself.</source>
+        <translation>der Wächter schweigt seit {0} s; das Sicherheitsrelais öffnet von selbst.</translation>
+    </message>
+    <message>
+        <source>See logs/watchdog.log and the load of the machine, then run `rigctl resume`.</source>
+        <translation>logs/watchdog.log und Last des Rechners ansehen, dann fortsetzen (rigctl resume).</translation>
+    </message>
+    <message>
+        <source>the watchdog process has gone; the safety relay has opened.</source>
+        <translation>der Prozess des Wächters ist weg; das Sicherheitsrelais hat geöffnet.</translation>
+    </message>
+    <message>
+        <source>Nothing moves without it. See logs/watchdog.log, then run `rigctl resume`.</source>
+        <translation>Ohne ihn bewegt sich nichts. logs/watchdog.log ansehen, dann fortsetzen (rigctl resume).</translation>
+    </message>
+    <message>
+        <source>a program is running.</source>
+        <translation>ein Programm läuft.</translation>
+    </message>
+    <message>
+        <source>Set-points by hand belong to a manual session.</source>
+        <translation>Sollwerte von Hand gehören in eine manuelle Sitzung.</translation>
+    </message>
+    <message>
+        <source>nothing has tripped.</source>
+        <translation>nichts hat ausgelöst.</translation>
+    </message>
+    <message>
+        <source>asked for again.</source>
+        <translation>nochmals verlangt.</translation>
+    </message>
+    <message>
+        <source>the watchdog has tripped.</source>
+        <translation>der Wächter hat ausgelöst.</translation>
+    </message>
+    <message>
+        <source>Remove the cause, then reset.</source>
+        <translation>Ursache beseitigen, dann rücksetzen.</translation>
+    </message>
+    <message>
+        <source>a braking is being recorded.</source>
+        <translation>eine Bremsung wird aufgezeichnet.</translation>
+    </message>
+    <message>
+        <source>Release or stop it first.</source>
+        <translation>Zuerst Druck ablassen oder anhalten.</translation>
+    </message>
+    <message>
+        <source>the rig is locked.</source>
+        <translation>der Prüfstand ist gesperrt.</translation>
+    </message>
+    <message>
+        <source>Enable it first.</source>
+        <translation>Zuerst freigeben.</translation>
+    </message>
+    <message>
+        <source>the rig is running down.</source>
+        <translation>der Prüfstand fährt herunter.</translation>
+    </message>
+    <message>
+        <source>Wait until it rests.</source>
+        <translation>Warten, bis er stillsteht.</translation>
+    </message>
+    <message>
+        <source>temperature {0} °C is outside {1} … {2} °C.</source>
+        <translation>Temperatur {0} °C liegt außerhalb {1} … {2} °C.</translation>
+    </message>
+    <message>
+        <source>speed {0} 1/min is outside {1} … {2} 1/min.</source>
+        <translation>Drehzahl {0} 1/min liegt außerhalb {1} … {2} 1/min.</translation>
+    </message>
+    <message>
+        <source>ramp {0} 1/min/s is above {1} 1/min/s.</source>
+        <translation>Rampe {0} 1/min/s liegt über {1} 1/min/s.</translation>
+    </message>
+    <message>
+        <source>the pressure would fall to {0} bar.</source>
+        <translation>der Druck würde auf {0} bar fallen.</translation>
+    </message>
+    <message>
+        <source>Lower the amplitude.</source>
+        <translation>Amplitude verkleinern.</translation>
+    </message>
+    <message>
+        <source>the pressure would rise to {0} bar, above {1} bar.</source>
+        <translation>der Druck würde auf {0} bar steigen, über {1} bar.</translation>
+    </message>
+    <message>
+        <source>the actuator cannot hold less than {0} bar.</source>
+        <translation>der Aktor kann nicht weniger als {0} bar halten.</translation>
+    </message>
+    <message>
+        <source>Give 0 to release.</source>
+        <translation>0 angeben zum Lösen.</translation>
+    </message>
+    <message>
+        <source>a pressure function without a duration.</source>
+        <translation>ein Druckverlauf ohne Dauer.</translation>
+    </message>
+    <message>
+        <source>Give the duration in seconds.</source>
+        <translation>Dauer in Sekunden angeben.</translation>
+    </message>
+    <message>
+        <source>{0}: {1} (limit {2}).</source>
+        <translation>{0}: {1} (Grenzwert {2}).</translation>
+    </message>
+    <message>
+        <source>{0}: {1}.</source>
+        <translation>{0}: {1}.</translation>
+    </message>
+</context>
+<context>
     <name>run</name>
     <message>
         <source>Breaks off this braking now, releases, stops the disc and waits. Resume does it again.</source>
@@ -6575,6 +7529,10 @@ Links eine hinzufügen.</translation>
     <message>
         <source>A program is running; see the run page.</source>
         <translation>Ein Programm läuft; siehe Seite Lauf.</translation>
+    </message>
+    <message>
+        <source>A manual session is open; end it on the manual page first.</source>
+        <translation>Eine manuelle Sitzung ist offen; sie zuerst auf der Seite Manuell beenden.</translation>
     </message>
     <message>
         <source>Cannot be started: {0}</source>

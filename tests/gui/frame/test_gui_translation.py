@@ -12,7 +12,16 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QLocale, QSettings, QTranslator
-from PySide6.QtWidgets import QAbstractButton, QApplication, QGroupBox, QLabel, QTabWidget, QWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QComboBox,
+    QGroupBox,
+    QLabel,
+    QLineEdit,
+    QTabWidget,
+    QWidget,
+)
 
 from rigctl.gui.application import TRANSLATIONS, install_language
 from rigctl.gui.pages import PAGES
@@ -132,7 +141,12 @@ def german(qapp: QApplication) -> Iterator[None]:
 def shown(widget: QWidget) -> Iterator[str]:
     """What is written on a widget and in it."""
     for part in (widget, *widget.findChildren(QWidget)):
-        if isinstance(part, QLabel | QAbstractButton):
+        yield part.toolTip()
+        if isinstance(part, QLineEdit):
+            yield part.placeholderText()
+        elif isinstance(part, QComboBox):
+            yield from (part.itemText(i) for i in range(part.count()))
+        elif isinstance(part, QLabel | QAbstractButton):
             yield part.text()
         elif isinstance(part, QGroupBox):
             yield part.title()

@@ -15,6 +15,7 @@ from PySide6.QtCore import QCoreApplication
 
 from rigctl.config.rig import RigConfig
 from rigctl.gui.format import quantity_text
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState, Word
 from rigctl.gui.widgets.moving_bar import BarScale
 
@@ -150,10 +151,9 @@ class ManualModel:
         state = self.state
         if state.word is Word.TRIPPED:
             cause = state.cause
-            words = cause.words if cause else translate("manual", "The watchdog has stopped the rig.")
-            remedy = (
-                cause.remedy if cause and cause.remedy else translate("manual", "Find the cause, then reset.")
-            )
+            words = said(cause.words) if cause else translate("manual", "The watchdog has stopped the rig.")
+            advice = said(cause.remedy) if cause else ""
+            remedy = advice or translate("manual", "Find the cause, then reset.")
             return Notice(translate("manual", "Stopped by the watchdog: {0}").format(words), remedy, "alarm")
         if state.word is Word.STOPPING:
             return Notice(

@@ -31,6 +31,7 @@ from rigctl.gui.pages.manual.orders import PressureOrder, common_ranges, ranges_
 from rigctl.gui.pages.manual.readouts import Readouts
 from rigctl.gui.pages.manual.record_row import RecordRow
 from rigctl.gui.pages.manual.rigs import RigChoice, list_rigs, read_watchdog_limits
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState, Word
 from rigctl.gui.services import Services
 from rigctl.gui.widgets.live_slot import LiveSlot
@@ -253,7 +254,7 @@ class ManualPage(Page):
         state, scene = self.model.state, self.model.scene
         self.panel.setBusy(scene is Scene.STARTING or (self.panel.busy and state.word is Word.OFFLINE))
         if scene is Scene.STARTING:
-            self.panel.setNews(state.phase)
+            self.panel.setNews(said(state.phase))
         console = scene in (Scene.MANUAL, Scene.PROGRAM)
         self.scenes.setCurrentWidget(self._console if console else self.panel)
         if not console:

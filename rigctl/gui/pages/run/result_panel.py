@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWi
 
 from rigctl.engine.state import Outcome
 from rigctl.gui.pages.run.model import RunEnd, RunModel
+from rigctl.gui.rig.phases import said
 from rigctl.gui.theme import ThemeKeeper
 from rigctl.gui.widgets.inline import AskLine
 
@@ -146,7 +147,7 @@ class ResultPanel(QWidget):
     def _lines(self, end: RunEnd, model: RunModel) -> list[str]:
         lines: list[str] = []
         if end.outcome in (Outcome.TRIPPED, Outcome.FAILED):
-            lines += [end.cause, end.remedy]
+            lines += [said(end.cause), said(end.remedy)]
         numbers = model.not_done()
         if numbers:
             shown = ", ".join(map(str, numbers[:SHOWN])) + (" …" if len(numbers) > SHOWN else "")

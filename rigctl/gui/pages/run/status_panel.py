@@ -14,6 +14,7 @@ from rigctl.gui.format import time_text
 from rigctl.gui.pages.run.model import RunModel
 from rigctl.gui.pages.run.pace import end_text
 from rigctl.gui.pages.run.rows import RowState
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState
 from rigctl.gui.theme import ThemeKeeper
 
@@ -76,7 +77,7 @@ class StatusPanel(QWidget):
     def show_run(self, state: RigState, model: RunModel, factor: float | None, now: datetime) -> None:
         """The newest state."""
         program = state.mode == "program"
-        self.phase.setText(state.phase or self.tr("Waiting for the controller"))
+        self.phase.setText(said(state.phase) or self.tr("Waiting for the controller"))
         self.what.setText(self._what(state, model))
         total = len(model.rows)
         done = model.count(RowState.COMPLETE)
