@@ -15,7 +15,6 @@ import numpy as np
 
 from rigctl.calibration.fault import Fault
 from rigctl.calibration.record import Point
-from rigctl.core.units import REFERENCE_PRESSURE_PA
 from rigctl.signals.calibration import clipped_share, read_calibrator
 
 LEVELS_DB = (94.0, 114.0)
@@ -152,15 +151,6 @@ def evaluate(
 def level_of(pa_per_count: float, nominal_pa_per_count: float, level_db: float) -> float:
     """Level that the uncalibrated chain shows for a calibrator of `level_db`, dB."""
     return level_db + 20.0 * math.log10(nominal_pa_per_count / pa_per_count)
-
-
-def rms_db(counts: Any, pa_per_count: float) -> float:
-    """Level of counts over all frequencies, dB re 20 µPa; for the live display."""
-    samples = np.asarray(counts, dtype=np.float64)
-    if not len(samples):
-        return float("nan")
-    rms = float(np.sqrt(np.mean((samples - samples.mean()) ** 2))) * pa_per_count
-    return 20.0 * math.log10(max(rms, 1e-9) / REFERENCE_PRESSURE_PA)
 
 
 def _faults(recording: Recording) -> list[Fault]:

@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QSettings, Qt
 from service_mini_rig import MiniRig, braking, session_of
@@ -297,3 +298,9 @@ def test_words():
     assert masses_in("1 2,5; 4") == (1.0, 2.5, 4.0)
     assert figure_text("residual_percent", 0.0823) == "residual 0.0823 %"
     assert figure_text("emissivity_set", 0.85) == "emissivity set 0.85"
+
+
+def test_live_level_of_a_tone():
+    wave = np.round(2.0**0.5 / (20.0 / 32768) * np.sin(2 * np.pi * np.arange(40_000) / 40)).astype(np.int16)
+    assert sound_view.level_db(wave, 20.0 / 32768) == pytest.approx(94.0, abs=0.05)  # 1 Pa
+    assert np.isnan(sound_view.level_db([], 1.0))
