@@ -16,7 +16,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PROGRAM ?= configs/programs/squeal_matrix.toml
 RUN_ARGS ?=
-WORKERS ?= 3
+WORKERS ?= 2
 GUI_ARGS ?=
 
 help:
@@ -43,7 +43,6 @@ screenshots: $(VENV)/.dev
 figures: $(VENV)/.run
 	$(BIN)/rigctl model figures --out figures
 
-# Most of the time tests wait, for processes and for wires: three workers fill two processors.
 # Tests of real wires and real time work by the clock and may be late on a busy machine: what fails is run again, one
 # test at a time, and has to pass then.
 test: system lint types
