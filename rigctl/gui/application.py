@@ -41,6 +41,7 @@ def install_language(app: QApplication, language: str) -> list[QTranslator]:
     Numbers are written as in program files and on the command line (1.5), in every language.
     """
     QLocale.setDefault(QLocale(QLocale.Language.C))
+    app.setProperty("language", language)
     translators: list[QTranslator] = []
     if language == "en":
         return translators

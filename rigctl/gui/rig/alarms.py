@@ -18,6 +18,7 @@ from rigctl.core.journal import Journal
 from rigctl.gui.rig.alarm_list import WARNING, Alarm, AlarmList
 from rigctl.gui.rig.connection import RigConnection
 from rigctl.gui.rig.near_limits import LimitWatch
+from rigctl.gui.rig.phases import said
 from rigctl.gui.rig.state import RigState
 from rigctl.gui.work import Reporter, Work
 
@@ -121,7 +122,7 @@ class AlarmModel(QObject):
                 self.raise_warning(
                     f"calibration:{calibration.quantity}",
                     self.tr("The calibration of {0} is overdue since {1}.").format(
-                        calibration.quantity, calibration.due.isoformat()
+                        said(calibration.quantity), calibration.due.isoformat()
                     ),
                     self.tr("Calibrate it on the Service page."),
                 )

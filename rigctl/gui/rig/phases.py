@@ -68,6 +68,10 @@ SENTENCES = Patterns("rig", (
     QT_TRANSLATE_NOOP("rig", "Check the vent valve."),
     QT_TRANSLATE_NOOP("rig", "Use the emergency stop."),
     QT_TRANSLATE_NOOP("rig", "Remove the cause, then run `rigctl resume`."),
+    # what is calibrated
+    QT_TRANSLATE_NOOP("rig", "torque"),
+    QT_TRANSLATE_NOOP("rig", "microphone"),
+    QT_TRANSLATE_NOOP("rig", "emissivity"),
     # why the watchdog has stopped the rig
     QT_TRANSLATE_NOOP("rig", "brake pressure has no valid reading"),
     QT_TRANSLATE_NOOP("rig", "speed has no valid reading"),

@@ -45,7 +45,7 @@
     </message>
     <message>
         <source>Undo this (Ctrl+Z)</source>
-        <translation>Rückgängig machen (Ctrl+Z)</translation>
+        <translation>Rückgängig machen (Strg+Z)</translation>
     </message>
     <message>
         <source>Why these brakings must not count; the report prints it</source>
@@ -145,7 +145,7 @@ kein Not-Halt</translation>
     </message>
     <message>
         <source>The calibration of {0} is overdue since {1}.</source>
-        <translation>Die Kalibrierung von {0} ist seit {1} überfällig.</translation>
+        <translation>Kalibrierung {0} ist seit {1} überfällig.</translation>
     </message>
     <message>
         <source>Calibrate it on the Service page.</source>
@@ -199,7 +199,7 @@ kein Not-Halt</translation>
     </message>
     <message>
         <source>Say that they have been seen; they stay in the list (Ctrl+A: all)</source>
-        <translation>Als gesehen melden; sie bleiben in der Liste (Ctrl+A: alle)</translation>
+        <translation>Als gesehen melden; sie bleiben in der Liste (Strg+A: alle)</translation>
     </message>
     <message>
         <source>Acknowledge a&amp;ll</source>
@@ -549,8 +549,8 @@ Mittel</translation>
     <message>
         <source>Squeal
 dB</source>
-        <translation>Quietschen
-dB</translation>
+        <translation>Quietsch-
+pegel dB</translation>
     </message>
     <message>
         <source>Squeal
@@ -642,7 +642,7 @@ note</translation>
     </message>
     <message>
         <source>none</source>
-        <translation>keine</translation>
+        <translation>keins</translation>
     </message>
 </context>
 <context>
@@ -1089,7 +1089,7 @@ note</translation>
     </message>
     <message>
         <source>&lt;p&gt;&lt;b&gt;Data&lt;/b&gt;: choose a campaign, then a braking. Statistics, figures and report count complete brakings that are not excluded. Nothing is deleted: excluded brakings stay in the list, the trash is a folder of the campaign.&lt;/p&gt;&lt;p&gt;&lt;b&gt;Enter&lt;/b&gt; or &lt;b&gt;F11&lt;/b&gt;: large view · &lt;b&gt;Esc&lt;/b&gt;: back · &lt;b&gt;Ctrl+F&lt;/b&gt;: words in notes · &lt;b&gt;Ctrl+P&lt;/b&gt;: play the sound · &lt;b&gt;Delete&lt;/b&gt;: move to the trash · &lt;b&gt;Ctrl+Z&lt;/b&gt;: undo · &lt;b&gt;F5&lt;/b&gt;: look again. Ctrl or Shift and click choose several brakings. The wheel zooms the time; a right click on a plot copies or saves its picture.&lt;/p&gt;</source>
-        <translation>&lt;p&gt;&lt;b&gt;Daten&lt;/b&gt;: eine Kampagne wählen, dann eine Bremsung. Statistik, Grafiken und Bericht zählen vollständige Bremsungen, die nicht ausgeschlossen sind. Nichts wird gelöscht: Ausgeschlossene bleiben in der Liste, der Papierkorb ist ein Ordner der Kampagne.&lt;/p&gt;&lt;p&gt;&lt;b&gt;Enter&lt;/b&gt; oder &lt;b&gt;F11&lt;/b&gt;: große Ansicht · &lt;b&gt;Esc&lt;/b&gt;: zurück · &lt;b&gt;Ctrl+F&lt;/b&gt;: Wörter in Notizen · &lt;b&gt;Ctrl+P&lt;/b&gt;: Ton abspielen · &lt;b&gt;Entf&lt;/b&gt;: in den Papierkorb · &lt;b&gt;Ctrl+Z&lt;/b&gt;: rückgängig · &lt;b&gt;F5&lt;/b&gt;: neu einlesen. Ctrl oder Umschalt und Klick wählt mehrere Bremsungen. Das Rad dehnt die Zeit; ein Rechtsklick auf eine Grafik kopiert oder speichert ihr Bild.&lt;/p&gt;</translation>
+        <translation>&lt;p&gt;&lt;b&gt;Daten&lt;/b&gt;: eine Kampagne wählen, dann eine Bremsung. Statistik, Grafiken und Bericht zählen vollständige Bremsungen, die nicht ausgeschlossen sind. Nichts wird gelöscht: Ausgeschlossene bleiben in der Liste, der Papierkorb ist ein Ordner der Kampagne.&lt;/p&gt;&lt;p&gt;&lt;b&gt;Enter&lt;/b&gt; oder &lt;b&gt;F11&lt;/b&gt;: große Ansicht · &lt;b&gt;Esc&lt;/b&gt;: zurück · &lt;b&gt;Strg+F&lt;/b&gt;: Wörter in Notizen · &lt;b&gt;Strg+P&lt;/b&gt;: Ton abspielen · &lt;b&gt;Entf&lt;/b&gt;: in den Papierkorb · &lt;b&gt;Strg+Z&lt;/b&gt;: rückgängig · &lt;b&gt;F5&lt;/b&gt;: neu einlesen. Strg oder Umschalt und Klick wählt mehrere Bremsungen. Das Rad dehnt die Zeit; ein Rechtsklick auf eine Grafik kopiert oder speichert ihr Bild.&lt;/p&gt;</translation>
     </message>
 </context>
 <context>
@@ -1319,7 +1319,7 @@ note</translation>
     </message>
     <message>
         <source>A program file of the window or the command line (Ctrl+O)</source>
-        <translation>Eine Programmdatei des Fensters oder der Befehlszeile (Ctrl+O)</translation>
+        <translation>Eine Programmdatei des Fensters oder der Befehlszeile (Strg+O)</translation>
     </message>
     <message>
         <source>Recent</source>
@@ -1685,7 +1685,7 @@ s</translation>
     </message>
     <message>
         <source>Words in notes (Ctrl+F)</source>
-        <translation>Wörter in Notizen (Ctrl+F)</translation>
+        <translation>Wörter in Notizen (Strg+F)</translation>
     </message>
     <message>
         <source>Words in note, reason, tags, sequence or role</source>
@@ -1724,7 +1724,7 @@ s</translation>
     </message>
     <message>
         <source>&amp;Emissivity set</source>
-        <translation>Ein&amp;gestellter Emissionsgrad</translation>
+        <translation>Eingestellter Emissionsgra&amp;d</translation>
     </message>
     <message>
         <source>As it is set at the pyrometer now</source>
@@ -1866,7 +1866,7 @@ s</translation>
     </message>
     <message>
         <source>Rows with all these words (Ctrl+F)</source>
-        <translation>Zeilen mit allen diesen Wörtern (Ctrl+F)</translation>
+        <translation>Zeilen mit allen diesen Wörtern (Strg+F)</translation>
     </message>
     <message>
         <source>Process that wrote the record</source>
@@ -1999,7 +1999,7 @@ s</translation>
     </message>
     <message>
         <source>none</source>
-        <translation>keine</translation>
+        <translation>keiner</translation>
     </message>
     <message>
         <source>Disc at</source>
@@ -2149,7 +2149,7 @@ s</translation>
     </message>
     <message>
         <source>&amp;Own moment</source>
-        <translation>Ei&amp;genmoment</translation>
+        <translation>Eigenmomen&amp;t</translation>
     </message>
     <message>
         <source>Moment of the lever itself on the sensor; 0 when it is balanced</source>
@@ -2233,7 +2233,7 @@ s</translation>
     <name>Lists</name>
     <message>
         <source>Type a number and press Enter; several at once, as in 5 10 15, fill several rows. Paste from a spreadsheet with Ctrl+V.</source>
-        <translation>Zahl tippen und Enter drücken; mehrere zugleich, wie 5 10 15, füllen mehrere Zeilen. Aus einer Tabelle mit Ctrl+V einfügen.</translation>
+        <translation>Zahl tippen und Enter drücken; mehrere zugleich, wie 5 10 15, füllen mehrere Zeilen. Aus einer Tabelle mit Strg+V einfügen.</translation>
     </message>
     <message>
         <source>&amp;Temperatures</source>
@@ -2451,7 +2451,7 @@ s</translation>
     </message>
     <message>
         <source>Alt+1 … Alt+6 pages · F12 software stop · Ctrl + and Ctrl − size of text · F1 this help</source>
-        <translation>Alt+1 … Alt+6 Seiten · F12 Software-Stopp · Ctrl + und Ctrl − Schriftgröße · F1 diese Hilfe</translation>
+        <translation>Alt+1 … Alt+6 Seiten · F12 Software-Stopp · Strg + und Strg − Schriftgröße · F1 diese Hilfe</translation>
     </message>
     <message>
         <source>Unsaved changes</source>
@@ -2474,7 +2474,7 @@ s</translation>
     </message>
     <message>
         <source>Show the &amp;run</source>
-        <translation>Lauf &amp;zeigen</translation>
+        <translation>Lauf a&amp;nsehen</translation>
     </message>
     <message>
         <source>Page Run: brakings, occurrence map, verbs (Alt+3)</source>
@@ -2593,7 +2593,7 @@ s</translation>
     </message>
     <message>
         <source>Choose a campaign to see its measured squeal over the predicted boundary.</source>
-        <translation>Eine Kampagne wählen, um ihr gemessenes Quietschen über der berechneten Grenze zu sehen.</translation>
+        <translation>Kampagne wählen: ihr Quietschen erscheint über der Grenze.</translation>
     </message>
     <message>
         <source>Measured squeal is drawn where the axes are friction and pressure.</source>
@@ -3231,7 +3231,7 @@ s</translation>
     </message>
     <message>
         <source>A new program (Ctrl+N)</source>
-        <translation>Ein neues Programm (Ctrl+N)</translation>
+        <translation>Ein neues Programm (Strg+N)</translation>
     </message>
     <message>
         <source>Open …</source>
@@ -3239,7 +3239,7 @@ s</translation>
     </message>
     <message>
         <source>A program file (Ctrl+O)</source>
-        <translation>Eine Programmdatei (Ctrl+O)</translation>
+        <translation>Eine Programmdatei (Strg+O)</translation>
     </message>
     <message>
         <source>Recent</source>
@@ -3255,7 +3255,7 @@ s</translation>
     </message>
     <message>
         <source>To the open file (Ctrl+S)</source>
-        <translation>In die geöffnete Datei (Ctrl+S)</translation>
+        <translation>In die geöffnete Datei (Strg+S)</translation>
     </message>
     <message>
         <source>Save as …</source>
@@ -3263,7 +3263,7 @@ s</translation>
     </message>
     <message>
         <source>Under another name (Ctrl+Shift+S)</source>
-        <translation>Unter anderem Namen (Ctrl+Shift+S)</translation>
+        <translation>Unter anderem Namen (Strg+Umschalt+S)</translation>
     </message>
     <message>
         <source>Undo</source>
@@ -3271,7 +3271,7 @@ s</translation>
     </message>
     <message>
         <source>Take back the last change (Ctrl+Z)</source>
-        <translation>Die letzte Änderung zurücknehmen (Ctrl+Z)</translation>
+        <translation>Die letzte Änderung zurücknehmen (Strg+Z)</translation>
     </message>
     <message>
         <source>Redo</source>
@@ -3279,7 +3279,7 @@ s</translation>
     </message>
     <message>
         <source>Do it again (Ctrl+Y)</source>
-        <translation>Nochmals ausführen (Ctrl+Y)</translation>
+        <translation>Nochmals ausführen (Strg+Y)</translation>
     </message>
     <message>
         <source>●  {0}, not saved</source>
@@ -3429,7 +3429,7 @@ s</translation>
     </message>
     <message>
         <source>Remove this sequence (Del); Ctrl+Z brings it back</source>
-        <translation>Diese Sequenz entfernen (Entf); Ctrl+Z holt sie zurück</translation>
+        <translation>Diese Sequenz entfernen (Entf); Strg+Z holt sie zurück</translation>
     </message>
     <message>
         <source>Program</source>
@@ -4162,7 +4162,7 @@ bei [Hz]</translation>
     </message>
     <message>
         <source>&lt;p&gt;A program is a list of sequences; a sequence runs its lists of temperatures, speeds and pressures. What is wrong stands at its field and in the list on the right; a click there leads to the field.&lt;/p&gt;&lt;p&gt;In the lists: type numbers and press Enter, paste from a spreadsheet (Ctrl+V), Del deletes rows, + joins a speed row with the one above. The order of the loops is changed by dragging, or with Ctrl and the arrow keys.&lt;/p&gt;&lt;p&gt;Ctrl+N new · Ctrl+O open · Ctrl+S save · Ctrl+Shift+S save as · Ctrl+Z undo · Ctrl+Y redo · Alt+Up, Alt+Down move a sequence · Del remove it&lt;/p&gt;</source>
-        <translation>&lt;p&gt;Ein Programm ist eine Liste von Sequenzen; eine Sequenz arbeitet ihre Listen von Temperaturen, Drehzahlen und Drücken ab. Was falsch ist, steht am Feld und in der Liste rechts; ein Klick dort führt zum Feld.&lt;/p&gt;&lt;p&gt;In den Listen: Zahlen tippen und Enter drücken, aus einer Tabelle einfügen (Ctrl+V), Entf löscht Zeilen, + verbindet eine Drehzahlzeile mit der darüber. Die Schleifenfolge wird durch Ziehen geändert oder mit Ctrl und Pfeiltasten.&lt;/p&gt;&lt;p&gt;Ctrl+N neu · Ctrl+O öffnen · Ctrl+S speichern · Ctrl+Shift+S speichern als · Ctrl+Z rückgängig · Ctrl+Y wiederherstellen · Alt+Auf, Alt+Ab Sequenz verschieben · Entf entfernt sie&lt;/p&gt;</translation>
+        <translation>&lt;p&gt;Ein Programm ist eine Liste von Sequenzen; eine Sequenz arbeitet ihre Listen von Temperaturen, Drehzahlen und Drücken ab. Was falsch ist, steht am Feld und in der Liste rechts; ein Klick dort führt zum Feld.&lt;/p&gt;&lt;p&gt;In den Listen: Zahlen tippen und Enter drücken, aus einer Tabelle einfügen (Strg+V), Entf löscht Zeilen, + verbindet eine Drehzahlzeile mit der darüber. Die Schleifenfolge wird durch Ziehen geändert oder mit Strg und Pfeiltasten.&lt;/p&gt;&lt;p&gt;Strg+N neu · Strg+O öffnen · Strg+S speichern · Strg+Umschalt+S speichern als · Strg+Z rückgängig · Strg+Y wiederherstellen · Alt+Auf, Alt+Ab Sequenz verschieben · Entf entfernt sie&lt;/p&gt;</translation>
     </message>
     <message>
         <source>new program</source>
@@ -4170,7 +4170,7 @@ bei [Hz]</translation>
     </message>
     <message>
         <source>“{0}” is removed; Ctrl+Z brings it back</source>
-        <translation>„{0}“ ist entfernt; Ctrl+Z holt es zurück</translation>
+        <translation>„{0}“ ist entfernt; Strg+Z holt es zurück</translation>
     </message>
     <message>
         <source>First put right what is marked: only then durations can be estimated.</source>
@@ -4233,7 +4233,7 @@ bei [Hz]</translation>
     </message>
     <message>
         <source>&lt;b&gt;Service&lt;/b&gt;&lt;p&gt;&lt;b&gt;Devices&lt;/b&gt;: who they are, newest values, settings that are unsafe.&lt;br&gt;&lt;b&gt;Calibrations&lt;/b&gt;: torque by lever and weights, microphone by calibrator, emissivity by contact thermometer; a saved one holds from the next start of the rig.&lt;br&gt;&lt;b&gt;Alarms&lt;/b&gt;: what needs a person, with what to do; acknowledging is journaled.&lt;br&gt;&lt;b&gt;Journal&lt;/b&gt;: everything that happened, searched by words, process and kind.&lt;br&gt;&lt;b&gt;Fault laboratory&lt;/b&gt;: make things go wrong on a simulated rig.&lt;br&gt;&lt;b&gt;Window&lt;/b&gt;: language, look, size of text, data folder.&lt;/p&gt;&lt;p&gt;Ctrl+Tab next tab · Enter takes a reading or acknowledges · Esc leaves a calibration&lt;/p&gt;</source>
-        <translation>&lt;b&gt;Service&lt;/b&gt;&lt;p&gt;&lt;b&gt;Geräte&lt;/b&gt;: wer sie sind, neueste Werte, unsichere Einstellungen.&lt;br&gt;&lt;b&gt;Kalibrierungen&lt;/b&gt;: Moment mit Hebel und Gewichten, Mikrofon mit Kalibrator, Emissionsgrad mit Kontaktthermometer; eine gespeicherte gilt ab dem nächsten Start des Prüfstands.&lt;br&gt;&lt;b&gt;Alarme&lt;/b&gt;: was einen Menschen braucht, und was zu tun ist; Quittieren kommt ins Journal.&lt;br&gt;&lt;b&gt;Journal&lt;/b&gt;: alles, was geschah, durchsuchbar nach Wörtern, Prozess und Art.&lt;br&gt;&lt;b&gt;Fehlerlabor&lt;/b&gt;: an einem simulierten Prüfstand etwas schiefgehen lassen.&lt;br&gt;&lt;b&gt;Fenster&lt;/b&gt;: Sprache, Darstellung, Schriftgröße, Datenordner.&lt;/p&gt;&lt;p&gt;Ctrl+Tab nächste Karteikarte · Enter nimmt einen Wert auf oder quittiert · Esc verlässt eine Kalibrierung&lt;/p&gt;</translation>
+        <translation>&lt;b&gt;Service&lt;/b&gt;&lt;p&gt;&lt;b&gt;Geräte&lt;/b&gt;: wer sie sind, neueste Werte, unsichere Einstellungen.&lt;br&gt;&lt;b&gt;Kalibrierungen&lt;/b&gt;: Moment mit Hebel und Gewichten, Mikrofon mit Kalibrator, Emissionsgrad mit Kontaktthermometer; eine gespeicherte gilt ab dem nächsten Start des Prüfstands.&lt;br&gt;&lt;b&gt;Alarme&lt;/b&gt;: was einen Menschen braucht, und was zu tun ist; Quittieren kommt ins Journal.&lt;br&gt;&lt;b&gt;Journal&lt;/b&gt;: alles, was geschah, durchsuchbar nach Wörtern, Prozess und Art.&lt;br&gt;&lt;b&gt;Fehlerlabor&lt;/b&gt;: an einem simulierten Prüfstand etwas schiefgehen lassen.&lt;br&gt;&lt;b&gt;Fenster&lt;/b&gt;: Sprache, Darstellung, Schriftgröße, Datenordner.&lt;/p&gt;&lt;p&gt;Strg+Tab nächste Karteikarte · Enter nimmt einen Wert auf oder quittiert · Esc verlässt eine Kalibrierung&lt;/p&gt;</translation>
     </message>
 </context>
 <context>
@@ -4254,7 +4254,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>Order of the loops, outermost first. Drag a chip, or use Ctrl with the arrow keys.</source>
-        <translation>Schleifenfolge, äußerste zuerst. Ein Plättchen ziehen, oder Ctrl mit Pfeiltasten.</translation>
+        <translation>Schleifenfolge, äußerste zuerst. Ein Plättchen ziehen, oder Strg mit Pfeiltasten.</translation>
     </message>
     <message>
         <source>Order of the loops</source>
@@ -4882,7 +4882,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>Ctrl or Shift and click: several. Enter: large view. Delete: to the trash.</source>
-        <translation>Ctrl oder Umschalt und Klick: mehrere. Enter: große Ansicht. Entf: in den Papierkorb.</translation>
+        <translation>Strg oder Umschalt und Klick: mehrere. Enter: große Ansicht. Entf: in den Papierkorb.</translation>
     </message>
     <message>
         <source>{0} of {1} brakings</source>
@@ -5379,7 +5379,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>Also Ctrl + and Ctrl −; Ctrl 0 is 100 %</source>
-        <translation>Auch Ctrl + und Ctrl −; Ctrl 0 ist 100 %</translation>
+        <translation>Auch Strg + und Strg −; Strg 0 ist 100 %</translation>
     </message>
     <message>
         <source>Data &amp;folder</source>
@@ -5654,6 +5654,193 @@ Links eine hinzufügen.</translation>
     <message>
         <source>At the limit the watchdog trips: take some load off.</source>
         <translation>Am Grenzwert löst der Wächter aus: Last wegnehmen.</translation>
+    </message>
+</context>
+<context>
+    <name>calibrations</name>
+    <message>
+        <source>{0}, gain {1:.4f}, offset {2:+.2f} K</source>
+        <translation>{0}, Faktor {1:.4f}, Versatz {2:+.2f} K</translation>
+    </message>
+    <message>
+        <source>{0:.5f} mPa/count, gain {1:.4f}</source>
+        <translation>{0:.5f} mPa je Zähler, Faktor {1:.4f}</translation>
+    </message>
+    <message>
+        <source>gain {0:.5f}, offset {1:+.2f} {2}</source>
+        <translation>Faktor {0:.5f}, Versatz {1:+.2f} {2}</translation>
+    </message>
+    <message>
+        <source>{0}; valid until {1}</source>
+        <translation>{0}; gültig bis {1}</translation>
+    </message>
+    <message>
+        <source>sensor</source>
+        <translation>Sensor</translation>
+    </message>
+    <message>
+        <source>reference</source>
+        <translation>Normal</translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation>Notiz</translation>
+    </message>
+    <message>
+        <source>{0} readings; {1}</source>
+        <translation>{0} Ablesungen; {1}</translation>
+    </message>
+    <message>
+        <source>largest residual {0} % of full scale, allowed {1} %</source>
+        <translation>größte Restabweichung {0} % vom Endwert, erlaubt {1} %</translation>
+    </message>
+    <message>
+        <source>Repeat the point that stands out; check lever length and masses.</source>
+        <translation>Den auffälligen Punkt wiederholen; Hebellänge und Massen prüfen.</translation>
+    </message>
+    <message>
+        <source>hysteresis {0} % of full scale, allowed {1} %</source>
+        <translation>Hysterese {0} % vom Endwert, erlaubt {1} %</translation>
+    </message>
+    <message>
+        <source>Something rubs or is loose: check lever bearing and sensor mounting.</source>
+        <translation>Etwas reibt oder ist lose: Hebellager und Sensorbefestigung prüfen.</translation>
+    </message>
+    <message>
+        <source>the zero does not come back; it differs by {0} % of full scale, allowed {1} %</source>
+        <translation>der Nullpunkt kommt nicht zurück; er weicht um {0} % vom Endwert ab, erlaubt {1} %</translation>
+    </message>
+    <message>
+        <source>Let the chain warm up; check that the lever hangs free.</source>
+        <translation>Messkette warm werden lassen; prüfen, dass der Hebel frei hängt.</translation>
+    </message>
+    <message>
+        <source>scatter of a reading {0} % of full scale, allowed {1} %</source>
+        <translation>Streuung einer Ablesung {0} % vom Endwert, erlaubt {1} %</translation>
+    </message>
+    <message>
+        <source>Wait until the weights hang still; switch the ventilator off.</source>
+        <translation>Warten, bis die Gewichte still hängen; Lüfter ausschalten.</translation>
+    </message>
+    <message>
+        <source>only one direction of rotation was measured</source>
+        <translation>nur eine Drehrichtung wurde gemessen</translation>
+    </message>
+    <message>
+        <source>Load the other side too.</source>
+        <translation>Auch die andere Seite belasten.</translation>
+    </message>
+    <message>
+        <source>the two directions differ by {0} %, allowed {1} %</source>
+        <translation>die zwei Richtungen unterscheiden sich um {0} %, erlaubt {1} %</translation>
+    </message>
+    <message>
+        <source>Check that the lever is level on both sides and its length the same.</source>
+        <translation>Prüfen, dass der Hebel auf beiden Seiten waagrecht und gleich lang ist.</translation>
+    </message>
+    <message>
+        <source>the gain {0} is more than {1} % off</source>
+        <translation>der Faktor {0} liegt um mehr als {1} % daneben</translation>
+    </message>
+    <message>
+        <source>Check lever length and masses; then the scale of the channel in the rig file.</source>
+        <translation>Hebellänge und Massen prüfen; dann die Skala des Kanals in der Prüfstandsdatei.</translation>
+    </message>
+    <message>
+        <source>the largest load is only {0} % of full scale</source>
+        <translation>die größte Last ist nur {0} % vom Endwert</translation>
+    </message>
+    <message>
+        <source>Load to {0} % at least, better to the torque of the tests.</source>
+        <translation>Bis mindestens {0} % belasten, besser bis zum Moment der Prüfungen.</translation>
+    </message>
+    <message>
+        <source>the shaft turns with {0} 1/min: bring the rig to rest</source>
+        <translation>die Welle dreht mit {0} 1/min: Prüfstand zum Stillstand bringen</translation>
+    </message>
+    <message>
+        <source>the brake is pressed with {0} bar: release it</source>
+        <translation>die Bremse ist mit {0} bar angelegt: lösen</translation>
+    </message>
+    <message>
+        <source>the levels disagree by {0} dB, allowed {1} dB</source>
+        <translation>die Pegel weichen um {0} dB voneinander ab, erlaubt {1} dB</translation>
+    </message>
+    <message>
+        <source>Seat the calibrator again; check the gain of the amplifier.</source>
+        <translation>Kalibrator neu aufsetzen; Verstärkung prüfen.</translation>
+    </message>
+    <message>
+        <source>the sensitivity has changed by {0} dB since the last calibration</source>
+        <translation>die Empfindlichkeit hat sich seit der letzten Kalibrierung um {0} dB geändert</translation>
+    </message>
+    <message>
+        <source>Seat the calibrator again; when it stays so, the microphone may be damaged.</source>
+        <translation>Kalibrator neu aufsetzen; bleibt es so, ist das Mikrofon vielleicht beschädigt.</translation>
+    </message>
+    <message>
+        <source>the chain is {0} dB off its nominal sensitivity</source>
+        <translation>die Messkette liegt {0} dB neben ihrer Nennempfindlichkeit</translation>
+    </message>
+    <message>
+        <source>Check the level set at the calibrator and the gain of the amplifier.</source>
+        <translation>Eingestellten Pegel des Kalibrators und Verstärkung prüfen.</translation>
+    </message>
+    <message>
+        <source>at {0} dB: the converter is at its limit</source>
+        <translation>bei {0} dB: der Wandler ist an seiner Grenze</translation>
+    </message>
+    <message>
+        <source>Lower the gain, or use 94 dB.</source>
+        <translation>Verstärkung senken, oder 94 dB benutzen.</translation>
+    </message>
+    <message>
+        <source>at {0} dB: the loudest tone is at {1} Hz, not at 1 kHz</source>
+        <translation>bei {0} dB: der lauteste Ton liegt bei {1} Hz, nicht bei 1 kHz</translation>
+    </message>
+    <message>
+        <source>Switch the calibrator on and push it on to its stop.</source>
+        <translation>Kalibrator einschalten und bis zum Anschlag aufschieben.</translation>
+    </message>
+    <message>
+        <source>at {0} dB: the tone is only {1} dB above the rest</source>
+        <translation>bei {0} dB: der Ton liegt nur {1} dB über dem Rest</translation>
+    </message>
+    <message>
+        <source>Push the calibrator on to its stop; switch the ventilator off.</source>
+        <translation>Kalibrator bis zum Anschlag aufschieben; Lüfter ausschalten.</translation>
+    </message>
+    <message>
+        <source>at {0} dB: the level moves by {1} dB</source>
+        <translation>bei {0} dB: der Pegel schwankt um {1} dB</translation>
+    </message>
+    <message>
+        <source>Wait until the tone is steady; check the battery of the calibrator.</source>
+        <translation>Warten, bis der Ton ruhig ist; Batterie des Kalibrators prüfen.</translation>
+    </message>
+    <message>
+        <source>an emissivity of {0} is not likely</source>
+        <translation>ein Emissionsgrad von {0} ist unwahrscheinlich</translation>
+    </message>
+    <message>
+        <source>Both must look at the same place; wait until the contact thermometer is steady.</source>
+        <translation>Beide müssen dieselbe Stelle sehen; warten, bis das Kontaktthermometer ruhig ist.</translation>
+    </message>
+    <message>
+        <source>the pairs disagree by {0} K after correction</source>
+        <translation>die Paare weichen nach der Korrektur um {0} K ab</translation>
+    </message>
+    <message>
+        <source>Repeat the pair that stands out, with a steady temperature.</source>
+        <translation>Das auffällige Paar bei ruhiger Temperatur wiederholen.</translation>
+    </message>
+    <message>
+        <source>there is one pair only</source>
+        <translation>es gibt nur ein Paar</translation>
+    </message>
+    <message>
+        <source>A second one, 100 K higher, shows errors.</source>
+        <translation>Ein zweites, 100 K höher, zeigt Fehler.</translation>
     </message>
 </context>
 <context>
@@ -6087,7 +6274,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>Mean µ</source>
-        <translation>µ im Mittel</translation>
+        <translation>µ Mittel</translation>
     </message>
     <message>
         <source>Mean coefficient of friction</source>
@@ -6286,6 +6473,69 @@ Links eine hinzufügen.</translation>
     <message>
         <source>greatest</source>
         <translation>größter</translation>
+    </message>
+</context>
+<context>
+    <name>devices</name>
+    <message>
+        <source>{0} s old</source>
+        <translation>{0} s alt</translation>
+    </message>
+    <message>
+        <source>on</source>
+        <translation>ein</translation>
+    </message>
+    <message>
+        <source>off</source>
+        <translation>aus</translation>
+    </message>
+    <message>
+        <source>closed</source>
+        <translation>geschlossen</translation>
+    </message>
+    <message>
+        <source>open</source>
+        <translation>offen</translation>
+    </message>
+    <message>
+        <source>speed</source>
+        <translation>Drehzahl</translation>
+    </message>
+    <message>
+        <source>set-point</source>
+        <translation>Sollwert</translation>
+    </message>
+    <message>
+        <source>torque enable</source>
+        <translation>Momentfreigabe</translation>
+    </message>
+    <message>
+        <source>line pressure</source>
+        <translation>Leitungsdruck</translation>
+    </message>
+    <message>
+        <source>air</source>
+        <translation>Luft</translation>
+    </message>
+    <message>
+        <source>torque</source>
+        <translation>Moment</translation>
+    </message>
+    <message>
+        <source>disc</source>
+        <translation>Scheibe</translation>
+    </message>
+    <message>
+        <source>relay</source>
+        <translation>Relais</translation>
+    </message>
+    <message>
+        <source>not valid</source>
+        <translation>ungültig</translation>
+    </message>
+    <message>
+        <source>{0} ms old</source>
+        <translation>{0} ms alt</translation>
     </message>
 </context>
 <context>
@@ -6686,7 +6936,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>Mode {0} · {1} · {2} · damping {3} · {4}</source>
-        <translation>Mode {0} · {1} · {2} · Dämpfungsgrad {3} · {4}</translation>
+        <translation>Mode {0} · {1} · {2} · Dämpfung {3} · {4}</translation>
     </message>
     <message>
         <source>unstable</source>
@@ -7019,6 +7269,18 @@ Links eine hinzufügen.</translation>
     <message>
         <source>Remove the cause, then run `rigctl resume`.</source>
         <translation>Ursache beseitigen, dann fortsetzen (rigctl resume).</translation>
+    </message>
+    <message>
+        <source>torque</source>
+        <translation>Moment</translation>
+    </message>
+    <message>
+        <source>microphone</source>
+        <translation>Mikrofon</translation>
+    </message>
+    <message>
+        <source>emissivity</source>
+        <translation>Emissionsgrad</translation>
     </message>
     <message>
         <source>brake pressure has no valid reading</source>

@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 from rigctl.gui.application import TRANSLATIONS, install_language
 from rigctl.gui.pages import PAGES
 from rigctl.gui.pages.sequence.check_words import CHECKS, check_said
+from rigctl.gui.pages.service.fault_words import fault_said
 from rigctl.gui.rig.connection import RigConnection
 from rigctl.gui.rig.phases import SENTENCES, said
 from rigctl.gui.rig.state import RigState, SafetyCause, Word
@@ -296,3 +297,14 @@ def test_english_stays_as_it_came():
     ):
         assert said(text) == text
     assert check_said("450 degC is no channel of this rig") == "450 degC is no channel of this rig"
+
+
+def test_what_speaks_against_a_calibration_has_words(german: None):
+    told = []
+    for call in calls(ROOT / "rigctl" / "calibration", "Fault"):
+        words, remedy = (sample(arg) or "" for arg in call.args[:2])
+        told += [re.sub("^60: ", "at 94 dB: ", re.sub("^60 60 %", "hysteresis 60 %", words)), remedy]
+    assert len(told) > 20
+    for text in filter(None, told):
+        assert fault_said(text) != text, text
+    assert fault_said("there is one pair only") == "es gibt nur ein Paar"

@@ -16,7 +16,7 @@ from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QAbstractItemView, QMenu, QProgressBar, QTableView, QVBoxLayout, QWidget
 
 from rigctl.gui.pages.data.actions_bar import ActionsBar
-from rigctl.gui.pages.data.columns import COLUMNS
+from rigctl.gui.pages.data.columns import COLUMNS, state_text
 from rigctl.gui.pages.data.entry import Entry
 from rigctl.gui.pages.data.filter_bar import FilterBar
 from rigctl.gui.pages.data.table_model import BrakingTableModel
@@ -272,8 +272,14 @@ class TablePane(QWidget):
 
     def _widths(self) -> None:
         header = self.view.horizontalHeader()
+        metrics = header.fontMetrics()
         for number, column in enumerate(COLUMNS):
-            header.resizeSection(number, self._theme.px(_WIDTHS.get(column.key, 8)))
+            wanted = self._theme.px(_WIDTHS.get(column.key, 8))
+            words = str(self.model.headerData(number, Qt.Orientation.Horizontal) or "").splitlines()
+            if column.key == "state":
+                words.append(state_text("complete"))
+            widest = max((metrics.horizontalAdvance(word) for word in words), default=0)
+            header.resizeSection(number, max(wanted, widest + self._theme.px(2)))
 
 
 def _stretches(rows: list[int]) -> Iterator[tuple[int, int]]:

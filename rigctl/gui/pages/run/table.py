@@ -225,8 +225,11 @@ class BrakingTable(QTableView):
     def _restyle(self) -> None:
         metrics = QFontMetrics(self._theme.font("normal", bold=True))
         self.verticalHeader().setDefaultSectionSize(metrics.height() + self._theme.px(1))
+        model = self.model()
         for column, text in enumerate(_WIDEST):
-            self.setColumnWidth(column, metrics.horizontalAdvance(text) + self._theme.px(1))
+            words = [text, *str(model.headerData(column, Qt.Orientation.Horizontal) or "").splitlines()]
+            widest = max(metrics.horizontalAdvance(word) for word in words)
+            self.setColumnWidth(column, widest + self._theme.px(1))
 
     def fit(self, rows: Sequence[Row]) -> None:
         """Columns as wide as names and speeds of these rows want."""

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from rigctl.calibration.record import Calibration, Due, Quantity
@@ -19,9 +20,12 @@ from rigctl.gui.format import number_text
 from rigctl.gui.pages.service.live_session import LiveSession
 from rigctl.gui.pages.service.parts import Panel, PlainTable, label, set_look
 from rigctl.gui.pages.service.procedure import Procedure
+from rigctl.gui.rig.phases import said
 from rigctl.gui.services import Services
 from rigctl.gui.widgets.notice import Notice
 from rigctl.gui.work import Reporter
+
+translate = QCoreApplication.translate
 
 
 class DueCard(Panel):
@@ -68,10 +72,20 @@ def result_text(found: Calibration) -> str:
     """The result in one line."""
     if found.quantity is Quantity.EMISSIVITY and found.emissivity is not None:
         text = f"ε = {number_text(found.emissivity, 3)}"
-        return text if found.gain == 1.0 else f"{text}, gain {found.gain:.4f}, offset {found.offset:+.2f} K"
+        return (
+            text
+            if found.gain == 1.0
+            else translate("calibrations", "{0}, gain {1:.4f}, offset {2:+.2f} K").format(
+                text, found.gain, found.offset
+            )
+        )
     if found.quantity is Quantity.MICROPHONE:
-        return f"{1e3 * found.gain * found.nominal_scale:.5f} mPa/count, gain {found.gain:.4f}"
-    return f"gain {found.gain:.5f}, offset {found.offset:+.2f} {found.unit}"
+        return translate("calibrations", "{0:.5f} mPa/count, gain {1:.4f}").format(
+            1e3 * found.gain * found.nominal_scale, found.gain
+        )
+    return translate("calibrations", "gain {0:.5f}, offset {1:+.2f} {2}").format(
+        found.gain, found.offset, found.unit
+    )
 
 
 def _who(found: Calibration) -> str:
@@ -81,11 +95,16 @@ def _who(found: Calibration) -> str:
 def details_text(kept: Kept) -> str:
     """Everything that is kept of one calibration, for people."""
     found = kept.calibration
-    lines = [f"{found.quantity}: {result_text(found)}", f"{_who(found)}; valid until {found.due}"]
-    further = (("sensor", found.instrument), ("reference", found.reference), ("note", found.note))
+    valid = translate("calibrations", "{0}; valid until {1}").format(_who(found), found.due)
+    lines = [f"{said(found.quantity)}: {result_text(found)}", valid]
+    further = (
+        (translate("calibrations", "sensor"), found.instrument),
+        (translate("calibrations", "reference"), found.reference),
+        (translate("calibrations", "note"), found.note),
+    )
     lines += [f"{name}: {text}" for name, text in further if text]
     lines += [", ".join(figure_text(name, value) for name, value in found.figures.items())]
-    lines += [f"{len(found.points)} readings; {kept.path}"]
+    lines += [translate("calibrations", "{0} readings; {1}").format(len(found.points), kept.path)]
     return "\n".join(line for line in lines if line)
 
 
@@ -212,7 +231,7 @@ class CalibrationsTab(QWidget):
         self.table.show_rows(
             [
                 (
-                    f"{k.calibration.date.astimezone():%Y-%m-%d %H:%M}", k.calibration.quantity.value,
+                    f"{k.calibration.date.astimezone():%Y-%m-%d %H:%M}", said(k.calibration.quantity),
                     result_text(k.calibration), k.calibration.operator, k.calibration.due.isoformat(),
                 )
                 for k in self._kept

@@ -11,10 +11,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from PySide6.QtCore import QCoreApplication
+
 from rigctl.config.rig import ROLES, RigConfig
 from rigctl.core.journal import Record
 from rigctl.gui.format import number_text
 from rigctl.gui.rig.state import RigState
+
+translate = QCoreApplication.translate
 
 
 @dataclass(frozen=True)
@@ -69,27 +73,29 @@ def rows_of_session(config: RigConfig, records: Iterable[Record]) -> list[Device
 def values_of_state(state: RigState, age_s: float) -> dict[str, tuple[tuple[str, str], ...]]:
     """Newest values by role from the state of the window, with their age."""
     r = state.readings
-    old = f"{number_text(age_s, 1)} s old"
+    old = translate("devices", "{0} s old").format(number_text(age_s, 1))
 
     def shown(value: float, unit: str, decimals: int) -> str:
         return f"{number_text(value, decimals)} {unit}, {old}"
 
+    on, off = translate("devices", "on"), translate("devices", "off")
+    closed, opened = translate("devices", "closed"), translate("devices", "open")
     return {
         "drive": (
-            ("speed", shown(r.speed_rpm, "1/min", 1)),
-            ("set-point", f"{number_text(r.set_speed_rpm, 1)} 1/min"),
-            ("torque enable", "on" if state.enabled else "off"),
+            (translate("devices", "speed"), shown(r.speed_rpm, "1/min", 1)),
+            (translate("devices", "set-point"), f"{number_text(r.set_speed_rpm, 1)} 1/min"),
+            (translate("devices", "torque enable"), on if state.enabled else off),
         ),
         "pressure": (
-            ("line pressure", shown(r.pressure_bar, "bar", 2)),
-            ("set-point", f"{number_text(r.set_pressure_bar, 2)} bar"),
+            (translate("devices", "line pressure"), shown(r.pressure_bar, "bar", 2)),
+            (translate("devices", "set-point"), f"{number_text(r.set_pressure_bar, 2)} bar"),
         ),
-        "ventilator": (("air", f"{number_text(r.ventilator_m3_h, 0)} m³/h"),),
+        "ventilator": ((translate("devices", "air"), f"{number_text(r.ventilator_m3_h, 0)} m³/h"),),
         "acquisition": (
-            ("torque", shown(r.torque_nm, "N·m", 1)),
-            ("disc", shown(r.temperature_degc, "°C", 1)),
+            (translate("devices", "torque"), shown(r.torque_nm, "N·m", 1)),
+            (translate("devices", "disc"), shown(r.temperature_degc, "°C", 1)),
         ),
-        "safety": (("relay", "closed" if state.relay_closed else "open"),),
+        "safety": ((translate("devices", "relay"), closed if state.relay_closed else opened),),
     }
 
 
@@ -131,7 +137,13 @@ def _value_text(reading: Mapping[str, Any]) -> str:
     value, fault = reading.get("value"), reading.get("fault")
     if isinstance(value, float):
         value = f"{value:.5g}"
-    text = "not valid" if value is None else f"{value} {reading.get('unit', '')}".strip()
+    text = (
+        translate("devices", "not valid") if value is None else f"{value} {reading.get('unit', '')}".strip()
+    )
     age_s = reading.get("age_s")
-    parts = [text, "" if age_s is None else f"{age_s * 1e3:.0f} ms old", fault or ""]
+    parts = [
+        text,
+        "" if age_s is None else translate("devices", "{0} ms old").format(f"{age_s * 1e3:.0f}"),
+        fault or "",
+    ]
     return ", ".join(part for part in parts if part)

@@ -224,8 +224,12 @@ class JournalTab(QWidget):
         theme = self._services.theme
         pad_cells(self.table, theme)
         self.table.verticalHeader().setDefaultSectionSize(theme.px(3))
+        metrics = self.table.horizontalHeader().fontMetrics()
         for column, units in enumerate((11, 12, 12, 22)):
-            self.table.setColumnWidth(column, theme.px(units))
+            title = str(self.table.model().headerData(column, Qt.Orientation.Horizontal) or "")
+            self.table.setColumnWidth(
+                column, max(theme.px(units), metrics.horizontalAdvance(title) + theme.px(2))
+            )
 
     # -- life ------------------------------------------------------------------------------------
 

@@ -25,6 +25,7 @@ from PySide6.QtWidgets import (
 )
 
 from rigctl.calibration.fault import Fault
+from rigctl.gui.pages.service.fault_words import fault_said
 from rigctl.gui.theme import ThemeKeeper
 
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
@@ -177,8 +178,8 @@ class FaultList(QLabel):
             mark = "▲" if fault.fatal else "△"
             lines.append(
                 f'<p style="margin: 0 0 4px 0">'
-                f'<span style="color: {colour}">{mark} {_escaped(fault.words)}.</span> '
-                f'<span style="color: {t.muted}">{_escaped(fault.remedy)}</span></p>'
+                f'<span style="color: {colour}">{mark} {_escaped(fault_said(fault.words))}.</span> '
+                f'<span style="color: {t.muted}">{_escaped(fault_said(fault.remedy))}</span></p>'
             )
         self.setText("".join(lines))
         self.setVisible(bool(lines))

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 from rigctl.core.channels import TORQUE
 from rigctl.core.errors import RigctlError
 from rigctl.gui.format import number_text
+from rigctl.gui.pages.service.fault_words import fault_said
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.lever_form import LeverForm
 from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label, scrolled
@@ -236,7 +237,7 @@ class TorqueView(Procedure):
         problem = guide.problem({name: reading.mean for name, reading in readings.items()})
         torque = readings[TORQUE]
         if problem or torque.mean != torque.mean:
-            self._on_failed(problem or self.tr("the torque has no valid reading"))
+            self._on_failed(fault_said(problem) or self.tr("the torque has no valid reading"))
             return
         guide.take(torque.mean, torque.scatter)
         self._show()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
@@ -72,7 +72,9 @@ class WindowTab(QWidget):
         language.setObjectName("window-language")
         for code, name in LANGUAGES:
             language.addItem(name, code)
-        present = str(self._services.settings.value("language", "en")) or "en"
+        app = QCoreApplication.instance()
+        spoken = app.property("language") if app is not None else ""  # as started; settings may name none
+        present = str(self._services.settings.value("language", "") or spoken or "en")
         language.setCurrentIndex(max(language.findData(present), 0))
         language.activated.connect(self._on_language)
         return language
