@@ -12,7 +12,8 @@ import sys
 import time
 from pathlib import Path
 
-from PySide6.QtWidgets import QTableView
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QMessageBox, QTableView, QTabWidget
 from tour_hands import Hands
 
 from rigctl.gui.application import install_language, make_application, make_theme, window_settings
@@ -61,9 +62,7 @@ def manual_braking(p: Hands, how: str) -> None:
 def trip_and_reset(p: Hands) -> None:
     """Somebody presses the emergency stop; seen, acknowledged, released, reset in words, enabled again."""
     p.click("nav-service")
-    tabs = p.see("service-tabs")
-    index = next(i for i in range(tabs.count()) if "laboratory" in tabs.tabText(i).replace("&", ""))
-    p.click_widget(tabs.tabBar(), at=tabs.tabBar().tabRect(index).center())
+    tab(p, "service-tabs", "laboratory")
     p.picture("service-laboratory")
     p.click("lab-estop")
     p.wait_word(Word.TRIPPED)
@@ -153,6 +152,53 @@ def model(p: Hands) -> None:
     p.picture("model")
 
 
+def tab(p: Hands, name: str, words: str) -> None:
+    """Choose a tab by what is written on it."""
+    tabs = p.see(name, QTabWidget)
+    bar = tabs.tabBar()
+    index = next(i for i in range(tabs.count()) if words in tabs.tabText(i).replace("&", ""))
+    p.click_widget(bar, at=bar.tabRect(index).center())
+    p.wait(lambda: tabs.currentIndex() == index, words)
+
+
+def gallery(p: Hands) -> None:
+    """The other tabs, for the pictures of the documents."""
+    tab(p, "model-tabs", "map")
+    p.wait(lambda: not p.is_seen("map-cancel"), "the map", 240)
+    p.rest(2.0)
+    p.picture("model-map")
+    tab(p, "model-tabs", "helps")
+    p.wait(lambda: p.see("model-ranking", QTableView).model().rowCount() > 3, "the ranking", 240)
+    p.rest(1.0)
+    p.picture("model-helps")
+    p.click("nav-data")
+    tab(p, "data-tabs", "Figures")
+    p.rest(2.0)
+    p.picture("data-figures")
+    p.click("nav-service")
+    for words in ("Calibrations", "Alarms", "Journal"):
+        tab(p, "service-tabs", words)
+        p.rest(1.0)
+        p.picture(f"service-{words.lower()}")
+
+
+def leave(p: Hands) -> None:
+    """Close the window; the program that was never saved is asked about."""
+    asked: list[str] = []
+
+    def answer() -> None:
+        question = p.app.activeModalWidget()
+        if isinstance(question, QMessageBox):
+            asked.append(question.text())
+            p.click_widget(question.button(QMessageBox.StandardButton.Discard))
+        else:
+            QTimer.singleShot(100, answer)
+
+    QTimer.singleShot(100, answer)
+    assert p.window.close()
+    assert asked
+
+
 def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("--time", choices=("virtual", "real"), default="virtual")
@@ -160,6 +206,7 @@ def main() -> int:
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--theme", default="light")
     parser.add_argument("--language", default="en")
+    parser.add_argument("--gallery", action="store_true", help="the other tabs, too")
     options = parser.parse_args()
     began = time.monotonic()
     app = make_application([])
@@ -184,6 +231,8 @@ def main() -> int:
     matrix(p, options.time)
     data(p)
     model(p)
+    if options.gallery:
+        gallery(p)
     braking = read_braking(first / "brakings" / "00001.h5")
     marks = {mark.name: mark.values for mark in braking.marks}
     told = {
@@ -196,7 +245,7 @@ def main() -> int:
         "seconds": time.monotonic() - began,
     }
     print(json.dumps(told), flush=True)
-    window.close()
+    leave(p)
     del translators
     return 0
 
