@@ -549,8 +549,8 @@ Mittel</translation>
     <message>
         <source>Squeal
 dB</source>
-        <translation>Quietsch-
-pegel dB</translation>
+        <translation>Pegel
+dB</translation>
     </message>
     <message>
         <source>Squeal
@@ -561,8 +561,8 @@ frequenz</translation>
     <message>
         <source>Noise
 rating</source>
-        <translation>Geräusch-
-note</translation>
+        <translation>Note
+1…9</translation>
     </message>
     <message>
         <source>Note</source>
@@ -618,7 +618,7 @@ note</translation>
     </message>
     <message>
         <source>● conditioning</source>
-        <translation>● Konditionierung</translation>
+        <translation>● temperiert</translation>
     </message>
     <message>
         <source>● braking</source>
@@ -2416,7 +2416,7 @@ s</translation>
     </message>
     <message>
         <source>Click a pole: the brake moves in that mode. × start of a path.</source>
-        <translation>Einen Pol anklicken: die Bremse schwingt in dieser Mode. × Anfang einer Bahn.</translation>
+        <translation>Pol anklicken: die Bremse schwingt darin. × Bahnanfang.</translation>
     </message>
 </context>
 <context>
@@ -2878,7 +2878,7 @@ s</translation>
     </message>
     <message>
         <source>{0} heating and cooling</source>
-        <translation>{0} Heizen und Kühlen</translation>
+        <translation>{0} Temperieren</translation>
     </message>
     <message>
         <source>Used</source>
@@ -6724,7 +6724,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>Stopped by the watchdog: {0}</source>
-        <translation>Vom Wächter angehalten: {0}</translation>
+        <translation>Ausgelöst: {0}</translation>
     </message>
     <message>
         <source>Stopping</source>
@@ -6764,7 +6764,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>Enabled: motor and brake may move.</source>
-        <translation>Freigegeben: Motor und Bremse dürfen sich bewegen.</translation>
+        <translation>Freigegeben: Bewegung ist möglich.</translation>
     </message>
     <message>
         <source>Type a set-point and press Enter to apply it.</source>
@@ -6855,6 +6855,10 @@ Links eine hinzufügen.</translation>
         <translation>Die Temperatur</translation>
     </message>
     <message>
+        <source>1/min per s</source>
+        <translation>1/min je s</translation>
+    </message>
+    <message>
         <source>The pressure would fall to {0} bar. Raise the mean pressure or reduce the amplitude.</source>
         <translation>Der Druck würde auf {0} bar fallen. Mitteldruck erhöhen oder Amplitude verkleinern.</translation>
     </message>
@@ -6936,7 +6940,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>Mode {0} · {1} · {2} · damping {3} · {4}</source>
-        <translation>Mode {0} · {1} · {2} · Dämpfung {3} · {4}</translation>
+        <translation>Mode {0} · {1} · {2} · D {3} · {4}</translation>
     </message>
     <message>
         <source>unstable</source>

@@ -276,10 +276,10 @@ class TablePane(QWidget):
         for number, column in enumerate(COLUMNS):
             wanted = self._theme.px(_WIDTHS.get(column.key, 8))
             words = str(self.model.headerData(number, Qt.Orientation.Horizontal) or "").splitlines()
-            if column.key == "state":
-                words.append(state_text("complete"))
-            widest = max((metrics.horizontalAdvance(word) for word in words), default=0)
-            header.resizeSection(number, max(wanted, widest + self._theme.px(2)))
+            widest = max((metrics.horizontalAdvance(word) for word in words), default=0) + self._theme.px(2)
+            if column.key == "state":  # the padding of cells is wider than that of titles
+                widest = max(widest, metrics.horizontalAdvance(state_text("complete")) + self._theme.px(3.5))
+            header.resizeSection(number, max(wanted, widest))
 
 
 def _stretches(rows: list[int]) -> Iterator[tuple[int, int]]:

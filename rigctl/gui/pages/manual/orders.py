@@ -59,7 +59,7 @@ def ranges_of(rig: RigConfig) -> dict[str, NumberRange]:
     can = rig.capabilities
     return {
         "speed": _range("speed", can.min_speed_rpm, can.max_speed_rpm, "1/min"),
-        "ramp": _range("ramp", 1.0, can.max_speed_rate_rpm_s, "1/min per s"),
+        "ramp": _range("ramp", 1.0, can.max_speed_rate_rpm_s, translate("manual", "1/min per s")),
         "pressure": _range("pressure", can.min_pressure_bar, can.max_pressure_bar, "bar", 2, or_zero=True),
         "amplitude": _range("amplitude", 0.0, can.max_pressure_bar / 2.0, "bar", 2),
         "frequency": _range("frequency", 0.01, MAX_FREQUENCY_HZ, "Hz", 2),
@@ -75,7 +75,7 @@ def common_ranges() -> dict[str, NumberRange]:
     """Limits as shown before a rig is known."""
     return {
         "speed": _range("speed", 0.0, 1000.0, "1/min"),
-        "ramp": _range("ramp", 1.0, 100.0, "1/min per s"),
+        "ramp": _range("ramp", 1.0, 100.0, translate("manual", "1/min per s")),
         "pressure": _range("pressure", 0.5, 50.0, "bar", 2, or_zero=True),
         "amplitude": _range("amplitude", 0.0, 25.0, "bar", 2),
         "frequency": _range("frequency", 0.01, MAX_FREQUENCY_HZ, "Hz", 2),
