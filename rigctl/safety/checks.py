@@ -47,6 +47,8 @@ class Check:
         The value to report.
     threshold : str
         Key of the limits to report.
+    low, floor : callable, str
+        The same for the lower limit; reported instead when the value is below it.
     """
 
     id: str
@@ -56,6 +58,8 @@ class Check:
     per_block: bool = False
     value: Callable[[View], Any] | None = None
     threshold: str = ""
+    low: Callable[[View], Any] | None = None
+    floor: str = ""
 
 
 # -- signals that cannot be believed ----------------------------------------------------------------
@@ -250,18 +254,22 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check(
         "pressure_range", pressure_range, "pressure.readings", always=True,
         value=attrgetter("pressure.high"), threshold="pressure.max_bar",
+        low=attrgetter("pressure.low"), floor="pressure.min_bar",
     ),
     Check(
         "speed_range", speed_range, "speed.readings", always=True,
         value=attrgetter("speed.high"), threshold="speed.max_rpm",
+        low=attrgetter("speed.low"), floor="speed.min_rpm",
     ),
     Check(
         "torque_range", torque_range, "torque.readings", always=True,
         value=attrgetter("torque.high"), threshold="torque.max_nm",
+        low=attrgetter("torque.low"), floor="torque.min_nm",
     ),
     Check(
         "temperature_range", temperature_range, "disc_temperature.readings", always=True,
         value=attrgetter("temperature.high"), threshold="disc_temperature.max_degc",
+        low=attrgetter("temperature.low"), floor="disc_temperature.min_degc",
     ),
     Check(
         "temperature_approach", temperature_approach, "disc_temperature.approach_blocks", always=True,
@@ -336,6 +344,10 @@ class CheckRunner:
         return verdicts
 
     def _cause(self, check: Check, view: View) -> Cause:
+        if check.low is not None:
+            lowest, floor = check.low(view), attrgetter(check.floor)(self._limits)
+            if lowest < floor:
+                return Cause(check.id, lowest, floor)
         value = check.value(view) if check.value is not None else None
         threshold = attrgetter(check.threshold)(self._limits) if check.threshold else None
         return Cause(check.id, value, threshold)

@@ -330,3 +330,16 @@ def test_a_rate_needs_half_a_second() -> None:
 def test_rest_is_two_sided(pressure: float, speed: float, rest: bool) -> None:
     view = View(sample_at(0, pressure_bar=(9.0, pressure), speed_rpm=(9.0, speed)), None, False)
     assert view.at_rest(1.0, 1.0) is rest
+
+
+@pytest.mark.parametrize(
+    ("value", "limit"),
+    [(1300.5, LIMITS.torque.max_nm), (-195.6, LIMITS.torque.min_nm)],
+)
+def test_the_limit_that_was_passed_is_the_one_that_is_reported(value: float, limit: float) -> None:
+    runner, before, causes = CheckRunner(LIMITS), None, []
+    for k in range(4):
+        view = View(sample_at(k, torque_nm=(value,) * 10), before, relay_wanted=False)
+        causes += [v.cause for v in runner.run(view, before) if v.check.id == "torque_range"]
+        before = view
+    assert {(cause.value, cause.threshold) for cause in causes} == {(value, limit)}
