@@ -2593,7 +2593,7 @@ s</translation>
     </message>
     <message>
         <source>Choose a campaign to see its measured squeal over the predicted boundary.</source>
-        <translation>Kampagne wählen: ihr Quietschen erscheint über der Grenze.</translation>
+        <translation>Kampagne wählen zum Vergleich mit der Messung.</translation>
     </message>
     <message>
         <source>Measured squeal is drawn where the axes are friction and pressure.</source>
@@ -4462,6 +4462,10 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
         <translation>Wird ausgewertet …</translation>
     </message>
     <message>
+        <source>{0} mPa/count</source>
+        <translation>{0} mPa/Zähler</translation>
+    </message>
+    <message>
         <source>{0:.5f} mPa per count: {1} dB against the nominal sensitivity</source>
         <translation>{0:.5f} mPa je Zähler: {1} dB gegen die Nennempfindlichkeit</translation>
     </message>
@@ -4924,7 +4928,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>bring the disc to it</source>
-        <translation>Scheibe darauf bringen</translation>
+        <translation>Scheibe temperieren</translation>
     </message>
     <message>
         <source>Start t&amp;emperature</source>
@@ -4940,7 +4944,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>heat or cool to it</source>
-        <translation>darauf heizen oder kühlen</translation>
+        <translation>heizen oder kühlen</translation>
     </message>
     <message>
         <source>only cool, at most</source>
@@ -5008,7 +5012,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>Rest &amp;between brakings</source>
-        <translation>Pa&amp;use zwischen Bremsungen</translation>
+        <translation>Pa&amp;use danach</translation>
     </message>
     <message>
         <source>From release to the next braking</source>
@@ -5016,7 +5020,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>may run</source>
-        <translation>darf laufen</translation>
+        <translation>erlaubt</translation>
     </message>
     <message>
         <source>Ventilator while braking</source>
@@ -5028,7 +5032,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>rig: {0:g}</source>
-        <translation>Prüfstand: {0:g}</translation>
+        <translation>({0:g})</translation>
     </message>
 </context>
 <context>
@@ -5074,7 +5078,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>residual (% FS)</source>
-        <translation>Restabweichung (% v. E.)</translation>
+        <translation>Rest (% v. E.)</translation>
     </message>
     <message>
         <source>{0}: {1:.1f} N·m applied, {2:.2f} N·m read</source>
@@ -6298,7 +6302,7 @@ Links eine hinzufügen.</translation>
     </message>
     <message>
         <source>Squeal</source>
-        <translation>Quietschen</translation>
+        <translation>Quietsch.</translation>
     </message>
     <message>
         <source>Frequency of the loudest squeal</source>

@@ -253,7 +253,7 @@ class SoundView(Procedure):
                 [
                     (
                         quantity_text(r.level_db, "dB", 0),
-                        f"{r.pa_per_count * 1e3:.5f}\u202fmPa/count",
+                        self.tr("{0} mPa/count").format(f"{r.pa_per_count * 1e3:.5f}"),
                         quantity_text(r.frequency_hz, "Hz", 1),
                         quantity_text(r.spread_db, "dB", 2),
                         quantity_text(r.tone_to_rest_db, "dB", 0),
