@@ -84,7 +84,8 @@ class WaveformPlot(TimePlot):
         if found is None:
             return ""
         peak = number_text(max(abs(found[0]), abs(found[1])), 2)
-        return f"<b>{self.tr('peak {0}').format(peak)}</b>"
+        words = self.tr("peak {0}").format(peak)  # not in an f-string: lupdate does not look into those
+        return f"<b>{words}</b>"
 
 
 class LevelPlot(TimePlot):

@@ -1724,7 +1724,7 @@ s</translation>
     </message>
     <message>
         <source>&amp;Emissivity set</source>
-        <translation>Eingestellter Emissionsgra&amp;d</translation>
+        <translation>Emissionsgra&amp;d jetzt</translation>
     </message>
     <message>
         <source>As it is set at the pyrometer now</source>
@@ -2470,7 +2470,7 @@ s</translation>
     </message>
     <message>
         <source>Speed, pressure and temperature are set by the program; here you can look and listen. Pause, hold, skip or abort it on the page Run. STOP works from here, too.</source>
-        <translation>Drehzahl, Druck und Temperatur stellt das Programm; hier nur zusehen und zuhören. Pause, Halten, Überspringen und Abbrechen auf der Seite Lauf. STOPP wirkt auch hier.</translation>
+        <translation>Drehzahl, Druck und Temperatur stellt das Programm; hier nur zusehen und zuhören. Pause, Halten, Überspringen und Beenden auf der Seite Lauf. STOPP wirkt auch hier.</translation>
     </message>
     <message>
         <source>Show the &amp;run</source>
@@ -4583,7 +4583,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>A program is a list of brakings that the rig carries out by itself, for minutes or nights. Choose one to look at it, change it and start it on the Sequence page. Here you watch it: the table of brakings, the map of squeal, pause, skip, repeat, abort.</source>
-        <translation>Ein Programm ist eine Liste von Bremsungen, die der Prüfstand allein ausführt, minutenlang oder nächtelang. Eines wählen, um es auf der Seite Sequenz anzusehen, zu ändern und zu starten. Hier wird es verfolgt: Tabelle der Bremsungen, Quietschkarte, Pause, Überspringen, Wiederholen, Abbrechen.</translation>
+        <translation>Ein Programm ist eine Liste von Bremsungen, die der Prüfstand allein ausführt, minutenlang oder nächtelang. Eines wählen, um es auf der Seite Sequenz anzusehen, zu ändern und zu starten. Hier wird es verfolgt: Tabelle der Bremsungen, Quietschkarte, Pause, Überspringen, Wiederholen, Beenden.</translation>
     </message>
     <message>
         <source>Programs</source>
@@ -5301,11 +5301,11 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>R&amp;epeat</source>
-        <translation>Wie&amp;derholen</translation>
+        <translation>Wiede&amp;rholen</translation>
     </message>
     <message>
         <source>&amp;Abort…</source>
-        <translation>Abbre&amp;chen…</translation>
+        <translation>Been&amp;den…</translation>
     </message>
     <message>
         <source>&amp;Take command</source>
@@ -5329,7 +5329,7 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     </message>
     <message>
         <source>Abort the run</source>
-        <translation>Lauf abbrechen</translation>
+        <translation>Lauf beenden</translation>
     </message>
     <message>
         <source>Write</source>
@@ -5357,6 +5357,10 @@ Listenweise: die ersten zusammen, dann die zweiten, …; eine Liste mit einem We
     <message>
         <source>Sound pressure (Pa)</source>
         <translation>Schalldruck (Pa)</translation>
+    </message>
+    <message>
+        <source>peak {0}</source>
+        <translation>Spitze {0}</translation>
     </message>
 </context>
 <context>
@@ -5845,6 +5849,26 @@ Links eine hinzufügen.</translation>
     <message>
         <source>A second one, 100 K higher, shows errors.</source>
         <translation>Ein zweites, 100 K höher, zeigt Fehler.</translation>
+    </message>
+    <message>
+        <source>the disc must be {0} K warmer than its surroundings: the emissivity cannot be seen below</source>
+        <translation>die Scheibe muss {0} K wärmer sein als ihre Umgebung: darunter ist der Emissionsgrad nicht zu erkennen</translation>
+    </message>
+    <message>
+        <source>the masses must rise and be above zero: give them from light to heavy</source>
+        <translation>die Massen müssen steigen und über null liegen: von leicht nach schwer angeben</translation>
+    </message>
+    <message>
+        <source>three different loads are needed for a line and its residuals</source>
+        <translation>für eine Gerade und ihre Restabweichungen braucht es drei verschiedene Lasten</translation>
+    </message>
+    <message>
+        <source>the reading does not rise with the torque: check the sign of the channel</source>
+        <translation>die Ablesung steigt nicht mit dem Moment: Vorzeichen des Kanals prüfen</translation>
+    </message>
+    <message>
+        <source>no recording of a calibrator yet</source>
+        <translation>noch keine Aufzeichnung eines Kalibrators</translation>
     </message>
 </context>
 <context>

@@ -165,7 +165,8 @@ def test_window_is_german_from_frame_to_pages(qtbot, theme, german: None, tmp_pa
     qtbot.addWidget(window)
     window.show()
     qtbot.waitExposed(window)
-    titles = [window.findChild(QAbstractButton, f"nav-{entry.page_id}").text() for entry in PAGES]
+    buttons = [window.findChild(QAbstractButton, f"nav-{entry.page_id}") for entry in PAGES]
+    titles = [button.text() for button in buttons if isinstance(button, QAbstractButton)]
     assert titles == ["Manuell", "Sequenz", "Lauf", "Daten", "Modell", "Service"]
     assert "STOPP" in window.alarm_bar.stop.text() and "Not-Halt" in window.alarm_bar.stop.toolTip()
     assert window.state_bar.word.text() == "GETRENNT"
@@ -307,4 +308,9 @@ def test_what_speaks_against_a_calibration_has_words(german: None):
     assert len(told) > 20
     for text in filter(None, told):
         assert fault_said(text) != text, text
+    for name in ("emissivity", "torque", "microphone"):
+        for node in ast.walk(ast.parse((ROOT / "rigctl" / "calibration" / f"{name}.py").read_text("utf-8"))):
+            if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
+                why = sample(node.exc.args[0])
+                assert why is not None and fault_said(why) != why, why
     assert fault_said("there is one pair only") == "es gibt nur ein Paar"

@@ -70,6 +70,19 @@ FAULTS = Patterns("calibrations", (
     QT_TRANSLATE_NOOP("calibrations", "Repeat the pair that stands out, with a steady temperature."),
     QT_TRANSLATE_NOOP("calibrations", "there is one pair only"),
     QT_TRANSLATE_NOOP("calibrations", "A second one, 100 K higher, shows errors."),
+    # no result at all
+    QT_TRANSLATE_NOOP(
+        "calibrations",
+        "the disc must be {0} K warmer than its surroundings: the emissivity cannot be seen below",
+    ),
+    QT_TRANSLATE_NOOP(
+        "calibrations", "the masses must rise and be above zero: give them from light to heavy"
+    ),
+    QT_TRANSLATE_NOOP("calibrations", "three different loads are needed for a line and its residuals"),
+    QT_TRANSLATE_NOOP(
+        "calibrations", "the reading does not rise with the torque: check the sign of the channel"
+    ),
+    QT_TRANSLATE_NOOP("calibrations", "no recording of a calibrator yet"),
 ))  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 from rigctl.calibration.emissivity import Pyrometer
 from rigctl.core.channels import DISC_TEMPERATURE
 from rigctl.gui.format import number_text, quantity_text, signed_text
+from rigctl.gui.pages.service.fault_words import fault_said
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.heat_guide import HeatGuide
 from rigctl.gui.pages.service.parts import FaultList, Form, Panel, PlainTable, label, scrolled
@@ -247,6 +248,7 @@ class HeatView(Procedure):
 
     def _show(self) -> None:
         result, why = self.guide.result()
+        why = fault_said(why)
         rows = []
         for point in self.guide.points:
             after = ""

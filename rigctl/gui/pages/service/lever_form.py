@@ -10,6 +10,7 @@ from PySide6.QtCore import QSettings, Signal
 from PySide6.QtWidgets import QLineEdit, QVBoxLayout, QWidget
 
 from rigctl.calibration.torque import STANDARD_GRAVITY, Lever
+from rigctl.gui.pages.service.fault_words import fault_said
 from rigctl.gui.pages.service.parts import Form, set_wrong
 from rigctl.gui.pages.service.torque_guide import masses_in
 from rigctl.gui.theme import ThemeKeeper
@@ -69,6 +70,7 @@ class LeverForm(QWidget):
             words = str(error.errors()[0]["msg"]).removeprefix("Value error, ")
         except ValueError as error:
             words = str(error)
+        words = fault_said(words)
         return None, words[:1].upper() + words[1:] + "."
 
     def _on_changed(self) -> None:

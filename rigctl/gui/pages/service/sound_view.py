@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 from rigctl.core.channels import MICROPHONE
 from rigctl.core.units import REFERENCE_PRESSURE_PA
 from rigctl.gui.format import number_text, quantity_text, signed_text
+from rigctl.gui.pages.service.fault_words import fault_said
 from rigctl.gui.pages.service.form import FactsForm
 from rigctl.gui.pages.service.parts import FaultList, Panel, PlainTable, ThinBar, label, scrolled
 from rigctl.gui.pages.service.procedure import Procedure
@@ -237,7 +238,7 @@ class SoundView(Procedure):
     def _on_failed(self, why: str) -> None:
         self._job = None
         self._wants_reading = False
-        why = why.removeprefix("ValueError: ")
+        why = fault_said(why.removeprefix("ValueError: "))
         self.say(why[:1].upper() + why[1:] + ("" if why.endswith(".") else "."), "error")
         self._show()
 
