@@ -5,14 +5,14 @@
 Three runs in one process, software rendering, 1280 x 900 pixels:
 
 1. pyqtgraph: 4 channels x 12 s x 40 kHz, each a PlotDataItem with setDownsampling(auto, mode="peak") and
-   setClipToView on its PlotItem, data from a ring that is rolled as a plain program would do.
-2. rigctl: the same channels and size with incremental envelopes.
-3. rigctl: the whole live view (5 trends, waveform, spectrum, spectrogram, levels) of a rig that writes 4 slow
-   channels at 4 kHz and sound at 40 kHz, fed through a real ring and block messages.
+setClipToView on its PlotItem, data from a ring that is rolled as a plain program would do. 2. rigctl: the
+same channels and size with incremental envelopes. 3. rigctl: the whole live view (5 trends, waveform,
+spectrum, spectrogram, levels) of a rig that writes 4 slow channels at 4 kHz and sound at 40 kHz, fed through
+a real ring and block messages.
 
 Each is driven by the clock: 50 ms of samples every 50 ms, and drawn as often as the event loop allows, at
-most once in 4 ms. "Longest stall" is the largest time between two turns of a 2 ms timer, less these 2 ms. On a
-busy machine it holds the time that other programs took; the load is printed, and the most CPU time that the
+most once in 4 ms. "Longest stall" is the largest time between two turns of a 2 ms timer, less these 2 ms. On
+a busy machine it holds the time that other programs took; the load is printed, and the most CPU time that the
 event loop's own thread used between two turns.
 """
 

@@ -1,5 +1,6 @@
 """Tests of the window: offscreen unless a display is asked for; no Qt warning, no thread left behind."""
 
+import gc
 import os
 import threading
 from collections.abc import Iterator
@@ -11,7 +12,8 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ.setdefault("PYTEST_QT_API", "pyside6")
 os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
 
-from PySide6.QtCore import QSettings
+import shiboken6
+from PySide6.QtCore import QEvent, QSettings, QTimer
 from PySide6.QtWidgets import QApplication
 
 from rigctl.gui.pages.base import Page
@@ -36,6 +38,22 @@ def nothing_left(request: pytest.FixtureRequest) -> Iterator[None]:
     yield
     left = [t for t in threading.enumerate() if t not in before and t.is_alive() and not t.daemon]
     assert not left, f"threads left: {left}"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def no_timer_or_widget_left(qapp: QApplication) -> Iterator[None]:
+    """Timers and windows that the tests of a module have started have ended with them."""
+    yield
+    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    qapp.processEvents()
+    gc.collect()
+    seen = [w for w in qapp.topLevelWidgets() if shiboken6.isValid(w) and w.isVisible()]
+    assert not seen, f"windows left: {seen}"
+    timers = [
+        each for each in gc.get_objects()
+        if type(each) is QTimer and shiboken6.isValid(each) and each.isActive()
+    ]  # fmt: skip
+    assert not timers, f"timers left: {[(t.parent(), t.interval()) for t in timers]}"
 
 
 @pytest.fixture

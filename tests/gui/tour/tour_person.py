@@ -44,9 +44,9 @@ def manual_braking(p: Hands, how: str) -> None:
     p.fill("speed", "50", enter=True)
     p.wait(lambda: abs(p.state.readings.speed_rpm - 50) < 3, "50 1/min")
     p.wait_word(Word.RUNNING)
-    p.fill("pressure", "22", enter=True)
-    p.wait(lambda: p.state.readings.pressure_bar > 20, "pressure")
-    p.rest(1.5)
+    p.fill("pressure", "34", enter=True)  # enough for a squeal
+    p.wait(lambda: p.state.readings.pressure_bar > 32, "pressure")
+    p.rest(3.0)
     p.picture("manual-dragging")
     p.click("release")
     p.wait(lambda: p.state.readings.pressure_bar < 1, "release")
