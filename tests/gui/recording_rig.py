@@ -71,6 +71,7 @@ def _keep(name: str):
 
 for _name in (
     "start_manual", "start_program", "resume", "stop", "verb", "take_command", "enable", "disable",
-    "set_speed", "set_pressure", "set_ventilator", "condition", "record", "reset", "note", "rate", "end_session",
+    "set_speed", "set_pressure", "set_ventilator", "condition", "record", "reset",
+    "note", "rate", "end_session",
 ):  # fmt: skip
     setattr(RecordingRig, _name, _keep(_name))
