@@ -44,20 +44,24 @@ class Time(StrEnum):
 
 
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file.", show_default=True)]
+OutOption = Annotated[Path, typer.Option("--out", help="Folder for campaigns.")]
+NameOption = Annotated[
+    str | None, typer.Option("--name", help="Name of the campaign. [default: what and when]")
+]
+SeedOption = Annotated[
+    int | None,
+    typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the simulated rig. [default: random]"),
+]
+ReportOption = Annotated[bool, typer.Option(help="Build the report at the end.")]
 
 
 @app.command()
 def run(
     program: Annotated[Path, typer.Argument(help="Program file, e.g. configs/programs/squeal_matrix.toml.")],
     rig: RigOption = DEFAULT_RIG,
-    out: Annotated[Path, typer.Option("--out", help="Folder for campaigns.")] = Path("data"),
-    name: Annotated[
-        str | None, typer.Option("--name", help="Name of the campaign. [default: program and time]")
-    ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the simulated rig. [default: random]"),
-    ] = None,
+    out: OutOption = Path("data"),
+    name: NameOption = None,
+    seed: SeedOption = None,
     time: Annotated[
         Time | None,
         typer.Option(
@@ -65,7 +69,7 @@ def run(
             help="virtual: as fast as possible; real: by the clock. [default: virtual on a simulated rig]",
         ),
     ] = None,
-    report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
+    report: ReportOption = True,
 ) -> None:
     """Run a program: condition, brake, record, find squeal, report.
 
@@ -85,19 +89,14 @@ def run(
 @app.command()
 def manual(
     rig: RigOption = DEFAULT_RIG,
-    out: Annotated[Path, typer.Option("--out", help="Folder for campaigns.")] = Path("data"),
-    name: Annotated[
-        str | None, typer.Option("--name", help="Name of the campaign. [default: manual and time]")
-    ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the simulated rig. [default: random]"),
-    ] = None,
+    out: OutOption = Path("data"),
+    name: NameOption = None,
+    seed: SeedOption = None,
     time: Annotated[
         Time | None,
         typer.Option("--time", help="real: by the clock; virtual: as fast as possible. [default: real]"),
     ] = None,
-    report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
+    report: ReportOption = True,
 ) -> None:
     """Hold a rig for manual brakings: `rigctl gui` and `rigctl control` command it. Ctrl-C ends safely.
 
@@ -121,7 +120,7 @@ def resume(
             help="After a safety trip: what was found and done, in your words.",
         ),
     ] = "",
-    report: Annotated[bool, typer.Option(help="Build the report at the end.")] = True,
+    report: ReportOption = True,
 ) -> None:
     """Recover what a broken run has left and go on with the first braking that is not complete."""
     from rigctl.app.running import resume as resume_campaign

@@ -1,16 +1,22 @@
 """A rig connection that moves nothing: it keeps what was asked, and the test says what comes back."""
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+
+import pytest
+from PySide6.QtWidgets import QWidget
 
 from rigctl.config.loading import load_model
 from rigctl.config.rig import RigConfig
 from rigctl.core.journal import Record
 from rigctl.gui.rig.connection import RigConnection
 from rigctl.gui.rig.state import Readings, RigState, Word
+from rigctl.gui.services import Services
+from rigctl.gui.widgets.live_slot import LiveSlot
 
 ROOT = Path(__file__).resolve().parents[2]
 RIGS = ROOT / "configs" / "rigs"
@@ -75,3 +81,40 @@ for _name in (
     "note", "rate", "end_session",
 ):  # fmt: skip
     setattr(RecordingRig, _name, _keep(_name))
+
+
+@pytest.fixture
+def rig(services: Services) -> Iterator[RecordingRig]:
+    """In place of the connection of `services`."""
+    made = RecordingRig()
+    services.rig = made
+    yield made
+    made.close()
+
+
+class StillView(QWidget):
+    """In place of the live plots, which have tests of their own and cost time."""
+
+    def start(self) -> None:
+        """Nothing to run."""
+
+    def stop(self) -> None:
+        """Nothing runs."""
+
+    def save_layout(self, settings: object) -> None:
+        """Nothing to keep."""
+
+    def restore_layout(self, settings: object) -> None:
+        """Nothing was kept."""
+
+
+@pytest.fixture(autouse=True)
+def still_plots(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Live plots are made only in tests marked with the fixture `real_plots`."""
+    if "real_plots" not in request.fixturenames:
+        monkeypatch.setattr(LiveSlot, "_make", StillView)
+
+
+@pytest.fixture
+def real_plots() -> None:
+    """Ask for the real live plots."""
