@@ -46,7 +46,7 @@ figures: $(VENV)/.run
 # Tests of real wires and real time work by the clock and may be late on a busy machine: what fails is run again, one
 # test at a time, and has to pass then.
 test: system lint types
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal || $(BIN)/python -m pytest --last-failed --last-failed-no-failures none
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal --durations=15 || $(BIN)/python -m pytest --last-failed --last-failed-no-failures none
 
 # Says which Debian packages are missing for some of the tests; in CI installs them.
 system:

@@ -4,6 +4,7 @@ import pickle
 from pathlib import Path
 
 import pytest
+import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QSettings, QTimer
 
 from rigctl.core.errors import RigctlError
@@ -32,6 +33,8 @@ class InlineWork(QObject):
         function, args = pickle.loads(pickle.dumps((function, args)))
 
         def run():
+            if not shiboken6.isValid(job):
+                return  # the page has gone meanwhile, and its work with it
             job.done = True
             if job.cancelled:
                 return
@@ -39,7 +42,8 @@ class InlineWork(QObject):
                 result = function(*args)
             except RigctlError as error:
                 job.failed.emit(str(error))
-            else:
+                return
+            if shiboken6.isValid(job):
                 job.finished.emit(pickle.loads(pickle.dumps(result)))
 
         QTimer.singleShot(0, run)

@@ -18,6 +18,7 @@ COUNTS = {
     "dialog_fig5": {"Matrix": 25},
     "friction_map": {"bedding": 30, "constant temperature": 90, "constant pressure": 0},
     "quick_check": {"quick": 6},
+    "short_matrix": {"short": 6},
     "squeal_matrix": {"bedding": 30, "matrix": 225},
     "stop_brakings": {"stops": 24, "accelerated": 4},
 }
