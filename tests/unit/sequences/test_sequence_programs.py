@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
+from rigctl.config.loading import load_model
+from rigctl.config.rig import RigConfig
 from sequences import Braking, Program, dump_program, load_program
 from sequences.braking import AXES
 from sequences.capabilities import RigCapabilities
@@ -33,9 +35,10 @@ def test_every_shipped_program_is_listed_here(program_folder: Path) -> None:
 
 
 @pytest.mark.parametrize("name", COUNTS)
-def test_shipped_program(program_folder: Path, rig: RigCapabilities, name: str) -> None:
+def test_shipped_program(program_folder: Path, configs: Path, name: str) -> None:
     program = load_program(program_folder / f"{name}.toml")
-    result = check_program(program, rig)
+    rig = load_model(configs / "rigs" / "simulated.toml", RigConfig)
+    result = check_program(program, rig.capabilities)
     assert program.name == name
     assert result.problems == ()
     assert result.n_by_sequence == COUNTS[name]
