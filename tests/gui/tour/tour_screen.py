@@ -4,16 +4,20 @@ Job: start Xvfb and the tour's process, hand over what it says. Not its job: wha
 (`tour_person`).
 """
 
+import contextlib
+import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rigctl.app.sessions import BASE_VARIABLE
+from rigctl.app.sessions import BASE_VARIABLE, FILE_NAME
 
 HERE = Path(__file__).parent
 MISSING = [tool for tool in ("Xvfb", "xdotool") if shutil.which(tool) is None]
@@ -53,4 +57,15 @@ def tour(display: str, *options: str, timeout_s: float) -> subprocess.CompletedP
             check=False,
         )
     finally:
+        end_sessions(Path(runs))
         shutil.rmtree(runs, ignore_errors=True)
+
+
+def end_sessions(runs: Path) -> None:
+    """A tour that was cut short has left its session, which lives on by design."""
+    for told in runs.glob(f"*/{FILE_NAME}"):
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(json.loads(told.read_text())["pid"], signal.SIGTERM)
+    deadline = time.monotonic() + 30.0
+    while any(runs.iterdir()) and time.monotonic() < deadline:
+        time.sleep(0.05)
