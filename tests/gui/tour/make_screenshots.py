@@ -19,7 +19,7 @@ LIGHT = (
     "service-journal",
 )  # fmt: skip
 DARK = ("manual-dragging", "run", "model")
-COLOURS = 96
+COLOURS = 224
 
 
 def main() -> int:

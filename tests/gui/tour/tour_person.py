@@ -72,6 +72,9 @@ def trip_and_reset(p: Hands) -> None:
     p.click("acknowledge")
     p.wait(lambda: "alarm_acknowledged" in [r.kind for r in p.window.rig.records], "acknowledged")
     p.click("nav-service")
+    tab(p, "service-tabs", "Alarms")
+    p.picture("service-alarms")
+    tab(p, "service-tabs", "laboratory")
     p.click("lab-estop")
     p.rest(3.0)  # the watchdog wants to see the rig at rest for two seconds
     p.click("nav-manual")
@@ -165,7 +168,9 @@ def gallery(p: Hands) -> None:
     """The other tabs, for the pictures of the documents."""
     tab(p, "model-tabs", "map")
     p.wait(lambda: not p.is_seen("map-cancel"), "the map", 240)
-    p.rest(2.0)
+    p.click("map-campaign")  # its measured squeal over the predicted boundary
+    p.key("Down", "Return")
+    p.rest(4.0)
     p.picture("model-map")
     tab(p, "model-tabs", "helps")
     p.wait(lambda: p.see("model-ranking", QTableView).model().rowCount() > 3, "the ranking", 240)
@@ -176,7 +181,7 @@ def gallery(p: Hands) -> None:
     p.rest(2.0)
     p.picture("data-figures")
     p.click("nav-service")
-    for words in ("Calibrations", "Alarms", "Journal"):
+    for words in ("Calibrations", "Journal"):
         tab(p, "service-tabs", words)
         p.rest(1.0)
         p.picture(f"service-{words.lower()}")

@@ -104,7 +104,8 @@ class CampaignPane(QWidget):
         """Another list; the chosen campaign stays chosen."""
         chosen = self.value()
         self._shown = {info.path: info for info in campaigns}
-        self.folder.setText(str(folder))
+        self.folder.setText(folder.name)
+        self.folder.setToolTip(str(folder))
         self.list.blockSignals(True)
         self.list.clear()
         for info in campaigns:
