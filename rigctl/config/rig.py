@@ -7,16 +7,19 @@ physics of a simulated rig (`sim_hardware.plant`).
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from rigctl.core.units import PA_PER_BAR
 from sequences.capabilities import RigCapabilities
 
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
 
+LEAST_NET_BAR = 0.5  # below it torque over pressure is noise
 ROLES = ("drive", "pressure", "ventilator", "acquisition", "safety")
 
 
@@ -73,6 +76,13 @@ class FrictionConfig(_Frozen):
     piston_area_m2: Annotated[float, Field(gt=0, le=0.1)]
     effective_radius_m: Annotated[float, Field(gt=0, le=1.0)]
     p0_bar: NotNegative = 0.5
+
+    def mu(self, torque_nm: float, pressure_bar: float) -> float:
+        """Momentary coefficient of friction; NaN where so little pressure is left that it is noise."""
+        net_bar = pressure_bar - self.p0_bar
+        if net_bar < LEAST_NET_BAR:
+            return math.nan
+        return torque_nm / (2.0 * net_bar * PA_PER_BAR * self.piston_area_m2 * self.effective_radius_m)
 
 
 class PredictionConfig(_Frozen):

@@ -8,7 +8,6 @@ made (`rigctl.engine.procedures`), limits (watchdog), files (recorder).
 from __future__ import annotations
 
 import contextlib
-import math
 import time
 from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Sequence
@@ -18,7 +17,6 @@ from rigctl.core.blocks import Block
 from rigctl.core.channels import DISC_TEMPERATURE, PRESSURE, SPEED, TORQUE
 from rigctl.core.errors import RigctlError, RunError, SafetyTrip
 from rigctl.core.journal import Journal
-from rigctl.core.units import PA_PER_BAR
 from rigctl.engine.commands import AcknowledgeAlarm, Ask, Note, Rate
 from rigctl.engine.guard import Checkpoint, Guard
 from rigctl.engine.procedures import Procedures, Recorder, Script, at_rest
@@ -32,7 +30,6 @@ MAX_FAILURES_IN_A_ROW = 3
 SAFE_STATE_TIMEOUT_S = 60.0
 PAUSE_SLEEP_S = 0.02
 REPORT_EVERY_S = 0.1  # wall clock
-LEAST_NET_BAR = 0.5  # below it torque over pressure is noise
 ALL_CHECKPOINTS = (
     Checkpoint.BLOCK_RECEIVED
     | Checkpoint.ENGINE_STEPPED
@@ -307,18 +304,8 @@ class Engine:
         progress.relay = bool(block.status.get("relay", self._armed))
         progress.recording = self._procedures.recording
         progress.recording_left_s = max(self._procedures.recording_end_s - block.end_s, 0.0)
-        progress.mu = self._mu(progress.torque_nm, progress.pressure_bar)
+        progress.mu = self._rig.config.friction.mu(progress.torque_nm, progress.pressure_bar)
         self._report(progress)
-
-    def _mu(self, torque_nm: float, pressure_bar: float) -> float:
-        """Momentary coefficient of friction mu = M / (2 (p - p0) A r); NaN without pressure."""
-        geometry = self._rig.config.friction
-        net_bar = pressure_bar - geometry.p0_bar
-        if net_bar < LEAST_NET_BAR:
-            return math.nan
-        return torque_nm / (
-            2.0 * net_bar * PA_PER_BAR * geometry.piston_area_m2 * geometry.effective_radius_m
-        )
 
     # -- the program ----------------------------------------------------------------------------
 
