@@ -236,7 +236,7 @@ def test_signals_and_repaints_keep_the_references_of_true_and_none(qtbot, theme)
 def test_window_starts_without_the_heavy_libraries():
     """They cost a second and more; pages load them in other processes or when they are needed."""
     code = (
-        "import sys, rigctl.gui.__main__\n"
+        "import sys, rigctl.gui.main\n"
         "heavy = {'scipy', 'numba', 'h5py', 'matplotlib', 'can', 'canopen', 'pymodbus', 'sounddevice'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
@@ -266,6 +266,34 @@ def test_rigctl_gui_opens_attaches_to_nothing_and_ends_when_asked(tmp_path: Path
     out, _ = window.communicate(timeout=60)
     assert window.returncode == 0, out
     assert "Traceback" not in out
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"DISPLAY": "", "WAYLAND_DISPLAY": "", "QT_QPA_PLATFORM": ""}, "there is no screen"),
+        (
+            {"QT_QPA_PLATFORM": "offscreen", "PYTHONPATH": "{broken}"},
+            "Qt cannot be loaded (libGL.so.1: no file)",
+        ),
+    ],
+)
+def test_where_no_window_can_be_shown_one_line_says_why(changes: dict[str, str], words: str, tmp_path: Path):
+    broken = tmp_path / "PySide6"
+    broken.mkdir()
+    (broken / "__init__.py").write_text("raise ImportError('libGL.so.1: no file')\n")
+    environment = {**os.environ, **{key: value.format(broken=tmp_path) for key, value in changes.items()}}
+    done = subprocess.run(
+        [sys.executable, "-m", "rigctl.gui"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+    )
+    assert done.returncode == 1
+    assert words in done.stderr
+    assert len(done.stderr.splitlines()) == 1
 
 
 def test_no_window_is_left(qapp: QApplication):
