@@ -104,15 +104,15 @@ def test_a_program_is_started_watched_and_comes_to_its_end(watcher, tmp_path: Pa
     window.rig.start()
     assert window.state.word is Word.OFFLINE
     path = program(tmp_path)
-    path.write_text(path.read_text().replace("[5, 20]", "[5, 20, 6, 22, 7, 24]"))
+    path.write_text(path.read_text().replace("[5, 20]", "{ from = 2, to = 25, step = 1 }"))
     window.rig.start_program(path, RIG, seed=1)
     assert window.state.word is Word.STARTING
-    state = window.wait(lambda s: s.done == 6 and s.word is Word.OFFLINE)
+    state = window.wait(lambda s: s.done == 24 and s.word is Word.OFFLINE)
     words = {s.word for s in window.states}
     assert {Word.STARTING, Word.RUNNING} <= words
-    assert (state.total, state.incomplete, state.cause) == (6, 0, None)
+    assert (state.total, state.incomplete, state.cause) == (24, 0, None)
     assert window.blocks > 10
-    assert [r.kind for r in window.rig.records].count("BRAKING_COMMITTED") == 6
+    assert [r.kind for r in window.rig.records].count("BRAKING_COMMITTED") == 24
 
 
 def test_what_cannot_be_started_says_why(watcher, tmp_path: Path):
