@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from PySide6.QtCore import QSettings
 
@@ -53,7 +52,3 @@ class Services:
     navigate: Callable[..., None]
     notify: Callable[[str], None]
     alarms: AlarmModel | None = None
-
-    def show(self, page: str, **what: Any) -> None:
-        """Short for `navigate`."""
-        self.navigate(page, **what)

@@ -225,7 +225,7 @@ class RigConnection(QObject):
             elif record.kind == "safe_state_reached":
                 self._safe = True
         if self._lost:
-            state = after_loss(replace(state), safe=self._safe)
+            state = after_loss(state, safe=self._safe)
         self.state = state
         self.records.extend(records)
         self.recordsAdded.emit(records)

@@ -83,7 +83,7 @@ class ManualPage(Page):
         button = QPushButton(self.tr("Show the &run"))
         button.setObjectName("show-run")
         button.setToolTip(self.tr("Page Run: brakings, occurrence map, verbs (Alt+3)"))
-        button.clicked.connect(lambda: self.services.show("run"))
+        button.clicked.connect(lambda: self.services.navigate("run"))
         self._program_column = QVBoxLayout(box)
         for widget in (title, text):
             self._program_column.addWidget(widget)

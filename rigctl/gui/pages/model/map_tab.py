@@ -264,7 +264,7 @@ class MapTab(QWidget):
 
     def _open_braking(self) -> None:
         if self.chosen is not None:
-            self._services.show("data", braking=self.chosen.file)
+            self._services.navigate("data", braking=self.chosen.file)
 
     # -- a person's doings ------------------------------------------------------------------------
 

@@ -172,11 +172,11 @@ class RunPage(Page):
         self.verbs.noteGiven.connect(rig.note)
         self.verbs.rated.connect(rig.rate)
         self.result.resumeAsked.connect(self._resume_this)
-        self.result.dataAsked.connect(lambda: self.services.show("data", campaign=self.campaign))
+        self.result.dataAsked.connect(lambda: self.services.navigate("data", campaign=self.campaign))
         self.result.reportAsked.connect(self._open_report)
         self.result.otherAsked.connect(self._show_others)
         self.result.resetAsked.connect(rig.reset)
-        self.start.programChosen.connect(lambda path: self.services.show("sequence", program=path))
+        self.start.programChosen.connect(lambda path: self.services.navigate("sequence", program=path))
         self.start.resumeAsked.connect(self._resume)
         self._key("N", self._open_note)
         for rating in RATINGS:
@@ -378,7 +378,7 @@ class RunPage(Page):
         if row.attempt == 0:
             self.services.notify(self.tr("Braking {0} has no recording yet.").format(index))
             return
-        self.services.show("data", campaign=self.campaign, braking=index)
+        self.services.navigate("data", campaign=self.campaign, braking=index)
 
     def _rate(self, rating: int) -> None:
         if self.verbs.isVisible():
