@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -21,18 +21,18 @@ from PySide6.QtWidgets import (
 )
 
 from rigctl.gui.format import clock_text
+from rigctl.gui.pages.service.headed_table import HeadedTable, Index
 from rigctl.gui.pages.service.parts import LEFT, RIGHT, label, pad_cells
 from rigctl.gui.rig.alarm_list import ALARM, Alarm
 from rigctl.gui.services import Services
 from rigctl.gui.theme import ThemeKeeper
 
-Index = QModelIndex | QPersistentModelIndex
 _WORDS = 3
 _COUNT = 2
 _ROLE = Qt.ItemDataRole
 
 
-class AlarmTable(QAbstractTableModel):
+class AlarmTable(HeadedTable):
     """Alarms, newest first."""
 
     def __init__(self, theme: ThemeKeeper) -> None:
@@ -59,19 +59,9 @@ class AlarmTable(QAbstractTableModel):
         """The alarm in a row."""
         return self._rows[row] if 0 <= row < len(self._rows) else None
 
-    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008  Qt's own default
-        """See QAbstractItemModel."""
-        return 0 if parent.isValid() else len(self._rows)
-
-    def columnCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008
-        """See QAbstractItemModel."""
-        return 0 if parent.isValid() else len(self._heads)
-
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = _ROLE.DisplayRole) -> Any:
-        """See QAbstractItemModel."""
-        if orientation is Qt.Orientation.Horizontal and role == _ROLE.DisplayRole:
-            return self._heads[section]
-        return None
+    def shown(self) -> int:
+        """Rows that are shown."""
+        return len(self._rows)
 
     def data(self, index: Index, role: int = _ROLE.DisplayRole) -> Any:
         """See QAbstractItemModel."""

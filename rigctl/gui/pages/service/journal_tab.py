@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt, QTimer
+from PySide6.QtCore import QModelIndex, Qt, QTimer
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
@@ -26,19 +26,19 @@ from PySide6.QtWidgets import (
 
 from rigctl.core.journal import verify_journal
 from rigctl.gui.format import clock_text, number_text
+from rigctl.gui.pages.service.headed_table import HeadedTable, Index
 from rigctl.gui.pages.service.journal_list import Filter, JournalFile, Row, campaigns_of, details_of
 from rigctl.gui.pages.service.live_session import LiveSession
 from rigctl.gui.pages.service.parts import LEFT, RIGHT, label, pad_cells, set_look
 from rigctl.gui.services import Services
 from rigctl.gui.work import Reporter
 
-Index = QModelIndex | QPersistentModelIndex
 _ROLE = Qt.ItemDataRole
 TAIL_MS = 500
 _RIG_TIME = 1
 
 
-class JournalTable(QAbstractTableModel):
+class JournalTable(HeadedTable):
     """Rows that pass the filter, oldest first."""
 
     def __init__(self) -> None:
@@ -89,19 +89,9 @@ class JournalTable(QAbstractTableModel):
         """A shown row."""
         return self._shown[number] if 0 <= number < len(self._shown) else None
 
-    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008  Qt's own default
-        """See QAbstractItemModel."""
-        return 0 if parent.isValid() else len(self._shown)
-
-    def columnCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008
-        """See QAbstractItemModel."""
-        return 0 if parent.isValid() else len(self._heads)
-
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = _ROLE.DisplayRole) -> Any:
-        """See QAbstractItemModel."""
-        if orientation is Qt.Orientation.Horizontal and role == _ROLE.DisplayRole:
-            return self._heads[section]
-        return None
+    def shown(self) -> int:
+        """Rows that are shown."""
+        return len(self._shown)
 
     def data(self, index: Index, role: int = _ROLE.DisplayRole) -> Any:
         """See QAbstractItemModel."""
